@@ -1,0 +1,48 @@
+/// @file
+/// Where bodies touch: broad phase, then the collision model that the settings name.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "gotai/model/body_state.h"
+#include "gotai/model/contact_set.h"
+#include "gotai/model/settings.h"
+#include "gotai/model/step.h"
+#include "gotai/voxel/shape.h"
+
+namespace gotai::collision {
+
+/// Work done by one search.
+struct SearchStatistics {
+  std::uint32_t candidate_pairs = 0;  ///< from the broad phase
+  std::uint64_t tests = 0;            ///< sphere-sphere and sphere-plane tests
+};
+
+/// Storage that is reused between searches. Not state: deleting it changes no bit of any result.
+class CollisionCache {
+ public:
+  CollisionCache();
+  ~CollisionCache();
+  CollisionCache(CollisionCache&&) noexcept;
+  CollisionCache& operator=(CollisionCache&&) noexcept;
+
+  struct Storage;
+  Storage& storage() { return *storage_; }
+
+ private:
+  std::unique_ptr<Storage> storage_;
+};
+
+/// Finds the contacts of all pairs of which at least one body is dynamic.
+/// @param shapes    indexed by BodyState::shape
+/// @param margin    contacts are found up to this gap [m], >= 0
+/// @param[out] out  sorted by (body_a, body_b, feature); storage is reused
+/// @throws InvalidArgument when the level is finer than a shape's prepared level
+SearchStatistics find_contacts(const model::BodyState& bodies,
+                               std::span<const std::shared_ptr<const voxel::Shape>> shapes,
+                               const model::CollisionSettings& settings, double margin,
+                               CollisionCache& cache, model::ContactSet& out);
+
+}  // namespace gotai::collision

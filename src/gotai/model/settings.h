@@ -1,0 +1,74 @@
+/// @file
+/// The settings of a world: one validated struct with the same names in C++, in scene files, in
+/// recordings and on the command line (`--set impulse.method=penalty`).
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "gotai/core/types.h"
+
+namespace gotai::model {
+
+enum class CollisionModel : std::uint8_t { spheres, surface };
+enum class ImpulseMethodName : std::uint8_t {
+  penalty,
+  impulse,
+  impulse_averaged,
+  constraint,
+  sem,
+  vector_field
+};
+/// Which contacts an impulse method reads: all that were found, chapter 5's one per pair, or few
+/// per patch.
+enum class ContactTreatment : std::uint8_t { all, apparent, reduced };
+enum class SolverName : std::uint8_t { automatic, exact, iterative };
+enum class Integrator : std::uint8_t { semi_implicit, explicit_euler };
+
+struct CollisionSettings {
+  CollisionModel model = CollisionModel::spheres;
+  int level = 6;  ///< k of Fig. 3-5; at most the prepared level of every shape
+};
+
+struct ImpulseSettings {
+  ImpulseMethodName method = ImpulseMethodName::constraint;
+  ContactTreatment contacts = ContactTreatment::all;
+  SolverName solver = SolverName::automatic;
+  /// Compliance that shares the load of redundant contacts, as a fraction of trace(A)/n (erratum
+  /// 23).
+  double ridge = 1e-9;
+  double tolerance = 1e-10;   ///< iterative solver: relative natural-map residual
+  int max_iterations = 1000;  ///< iterative solver: sweeps per step
+};
+
+struct TimeSettings {
+  double step = 0.0;             ///< [s]; 0 means derived from level, speed and spin ("auto")
+  double safety = 0.5;           ///< factor on the derived bound (errata 30, 44)
+  double max_step = 1.0 / 60.0;  ///< [s], cap of the derived step
+  Integrator integrator = Integrator::semi_implicit;
+};
+
+struct Settings {
+  Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< [m/s^2], W
+  CollisionSettings collision;
+  ImpulseSettings impulse;
+  TimeSettings time;
+};
+
+/// Names as written in scene files ("impulse-averaged"). The parse functions are their inverse.
+std::string_view to_string(CollisionModel value);
+std::string_view to_string(ImpulseMethodName value);
+std::string_view to_string(ContactTreatment value);
+std::string_view to_string(SolverName value);
+std::string_view to_string(Integrator value);
+/// @throws InvalidArgument listing the allowed names
+CollisionModel parse_collision_model(std::string_view text);
+ImpulseMethodName parse_impulse_method(std::string_view text);
+ContactTreatment parse_contact_treatment(std::string_view text);
+SolverName parse_solver(std::string_view text);
+Integrator parse_integrator(std::string_view text);
+
+/// @throws InvalidArgument naming the setting as in a scene file, its value and what is allowed
+void validate(const Settings& settings);
+
+}  // namespace gotai::model

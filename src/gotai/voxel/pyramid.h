@@ -1,0 +1,53 @@
+/// @file
+/// The pyramid of surface voxels [Makino 2007, section 3.2, Figs. 3-1..3-4].
+///
+/// Level 1 is one cube around the whole shape; level h has 2^(h-1) voxels per side. The finest
+/// prepared level M is tested, reduced to its surface, and merged 8 to 1 into the coarser levels.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "gotai/core/types.h"
+
+namespace gotai::voxel {
+
+inline constexpr int kMaxLevel = 9;  ///< 256 voxels per side.
+
+/// Cube around a shape, in its mesh frame: the smallest around the bounding box, with the same
+/// centre (erratum 11).
+struct VoxelGrid {
+  Vec3 origin = Vec3::Zero();  ///< lowest corner [m], mesh frame
+  double edge = 0.0;           ///< edge of the level-1 voxel [m]
+
+  /// Voxel edge s_h = s_1 / 2^(h-1) [m].
+  double voxel_edge(int level) const;
+  /// Radius of a voxel's circumscribed sphere, sqrt(3)/2 s_h [m].
+  double voxel_radius(int level) const;
+  /// Centre of voxel (ix, iy, iz) of a level [m], mesh frame.
+  Vec3 voxel_center(int level, const std::array<std::uint16_t, 3>& index) const;
+};
+
+/// The surface voxels of one level, in Morton order, so that the children of a voxel are
+/// contiguous.
+struct PyramidLevel {
+  std::vector<std::array<std::uint16_t, 3>> index;  ///< (ix, iy, iz) per voxel
+  /// size() + 1 offsets: the children of voxel i are [first_child[i], first_child[i+1]) of the next
+  /// level. Empty at the finest level.
+  std::vector<std::uint32_t> first_child;
+  std::vector<Vec3> center;  ///< voxel centres [m], mesh frame
+
+  std::size_t size() const { return index.size(); }
+};
+
+/// Surface voxels of all levels 1..M. levels[h - 1] is level h.
+struct Pyramid {
+  VoxelGrid grid;
+  std::vector<PyramidLevel> levels;
+
+  int max_level() const { return static_cast<int>(levels.size()); }
+  const PyramidLevel& level(int h) const { return levels[static_cast<std::size_t>(h) - 1]; }
+};
+
+}  // namespace gotai::voxel

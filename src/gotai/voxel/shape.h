@@ -1,0 +1,36 @@
+/// @file
+/// Everything that is prepared once per shape: the second link of the chain mesh -> shape -> body.
+#pragma once
+
+#include <string>
+
+#include "gotai/core/hash.h"
+#include "gotai/geometry/mass_properties.h"
+#include "gotai/geometry/mesh.h"
+#include "gotai/voxel/pyramid.h"
+
+namespace gotai::voxel {
+
+/// What a shape is prepared with.
+struct ShapeOptions {
+  int prepared_level = 7;  ///< M, the finest level of the pyramid, 1..kMaxLevel
+};
+
+/// A prepared shape. Immutable and shared between bodies. Lengths in metres, mesh frame M.
+struct Shape {
+  std::string name;
+  geometry::Mesh mesh;            ///< polygons for drawing, and the tetrahedra when there are any
+  geometry::MassProperties mass;  ///< at density 1
+  Pyramid pyramid;
+  double bounding_radius = 0.0;  ///< farthest vertex from the centre of mass [m]
+  /// Farthest surface of any voxel sphere from the centre of mass, per level (index h - 1) [m]:
+  /// rho of the corrected time step (erratum 29).
+  std::vector<double> voxel_bounding_radius;
+  Hash128 content;  ///< of mesh and options: the key of the cache
+};
+
+/// Prepares a shape: mass properties and the voxel pyramid.
+/// @throws InvalidArgument for a bad level, an open surface without tetrahedra, or no volume
+Shape make_shape(std::string name, geometry::Mesh mesh, const ShapeOptions& options);
+
+}  // namespace gotai::voxel
