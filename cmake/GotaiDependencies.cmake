@@ -1,6 +1,20 @@
-# Libraries that the modules link against. Shared by the build and, for those in public headers, by the installed package.
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(TBB REQUIRED)
-find_package(fmt REQUIRED)
-find_package(PkgConfig REQUIRED)
-pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
+# Libraries that the modules link against. The build includes this file, and so does the installed
+# package: static libraries pass their own dependencies on to whoever links them.
+if(CMAKE_FIND_PACKAGE_NAME STREQUAL "gotai")
+  include(CMakeFindDependencyMacro)
+  macro(gotai_find_package)
+    find_dependency(${ARGN})
+  endmacro()
+else()
+  macro(gotai_find_package)
+    find_package(${ARGN} REQUIRED)
+  endmacro()
+endif()
+
+gotai_find_package(Eigen3 3.4 NO_MODULE)
+gotai_find_package(TBB)
+gotai_find_package(fmt)
+gotai_find_package(PkgConfig)
+if(NOT TARGET PkgConfig::xxhash)
+  pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
+endif()
