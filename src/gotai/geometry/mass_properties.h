@@ -19,4 +19,13 @@ struct MassProperties {
 /// @throws InvalidArgument when the volume is not positive and finite
 MassProperties mass_properties(const Mesh& mesh);
 
+/// The frame P in which an inertia tensor is diagonal.
+struct PrincipalAxes {
+  Vec3 moments;  ///< ascending, in the unit of the tensor
+  Quat q_BP;     ///< rotation of the principal axes P in the tensor's frame B
+};
+
+/// Diagonalises a symmetric inertia tensor: inertia = R(q_BP) diag(moments) R(q_BP)^T.
+PrincipalAxes principal_axes(const Mat3& inertia);
+
 }  // namespace gotai::geometry
