@@ -54,10 +54,12 @@ struct BodyState {
   std::vector<BodyKind> kind;
   std::vector<Geometry> geometry;
 
+  // Derived for dynamic bodies, written by refresh_derived(); given for kinematic ones, so saved
+  // too.
+  std::vector<Vec3> w_W;  ///< angular velocity [rad/s], W; inverse_I_W L_W for dynamic bodies
+
   // Derived: never saved; written by refresh_derived().
-  std::vector<Mat3>
-      inverse_I_W;        ///< inverse inertia [1/(kg m^2)], W; 0 for bodies with inverse mass 0
-  std::vector<Vec3> w_W;  ///< angular velocity [rad/s], W; inverse_I_W L_W (kinematic: given)
+  std::vector<Mat3> inverse_I_W;  ///< inverse inertia [1/(kg m^2)], W; 0 for inverse mass 0
 
   std::size_t size() const { return x_W.size(); }
   bool is_dynamic(BodyIndex i) const { return inverse_mass[i] > 0.0; }

@@ -45,6 +45,10 @@ struct ContactSet {
             double area_m2, FeatureKey key);
 };
 
+/// Gaps at the present poses: normal . (anchor on a - anchor on b), with the normals as found [m].
+/// @param[out] gap  one per contact; storage is reused
+void refresh_gaps(const BodyState& bodies, const ContactSet& contacts, std::vector<double>& gap);
+
 /// Checks order, ranges, unit normals.
 /// @throws SimulationError naming pair and contact
 void validate(const ContactSet& contacts, std::size_t body_count);

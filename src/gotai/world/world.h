@@ -22,6 +22,7 @@
 #include "gotai/model/step.h"
 #include "gotai/voxel/shape.h"
 #include "gotai/world/body_description.h"
+#include "gotai/world/snapshot.h"
 
 namespace gotai {
 
@@ -113,14 +114,22 @@ class World {
   Vec3 momentum() const;
   /// Angular momentum of the dynamic bodies about the world's origin [kg m^2/s].
   Vec3 angular_momentum() const;
-  /// Hash of the state: time, step count, and the state arrays of bodies and contact memory.
+  /// The state between two steps.
+  Snapshot snapshot() const;
+  /// Goes back to a state of this very world (same bodies in the same order).
+  /// @throws InvalidArgument when the number of bodies differs
+  void restore(const Snapshot& snapshot);
+  /// Hash of the state: exactly what snapshot() holds.
   Hash128 state_hash() const;
   /// Contacts of the present poses, without stepping (initial overlaps).
   model::ContactSet find_contacts_now() const;
 
  private:
-  void move_kinematic_bodies(double dt);
-  double choose_step() const;
+  BodyId append(const std::string& name);
+  void place(model::BodyIndex i, const Pose& X_WM);
+  void aim_kinematic_bodies(double dt);
+  void substep(const model::StepPlan& plan, model::StepReport& report);
+  void check_state() const;
 
   model::Settings settings_;
   model::MaterialTable materials_;
@@ -130,6 +139,7 @@ class World {
   model::BodyState bodies_;
   model::ContactMemory memory_;
   double time_ = 0.0;
+  double last_dt_ = 0.0;
   std::uint64_t step_count_ = 0;
 
   std::vector<BodyId> ids_;                          // per column, ascending
@@ -141,6 +151,7 @@ class World {
   std::unique_ptr<impulse::ImpulseMethod> method_;
   collision::CollisionCache cache_;
   model::ContactSet contacts_;
+  std::vector<double> gaps_;  // current gap per contact [m]
   model::Update update_;
   std::vector<Observer> observers_;
 };
