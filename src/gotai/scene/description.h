@@ -59,19 +59,19 @@ struct Pour {
 
 /// [record]
 struct RecordSettings {
-  double fps = 60.0;            ///< frames per second of simulated time
-  bool contacts = true;         ///< contacts of every frame
-  double checkpoint = 30.0;     ///< a checkpoint at least every so many seconds of wall time; 0: none
+  double fps = 60.0;         ///< frames per second of simulated time
+  bool contacts = true;      ///< contacts of every frame
+  double checkpoint = 30.0;  ///< a checkpoint at least every so many seconds of wall time; 0: none
 };
 
 /// A whole scene.
 struct SceneDescription {
-  std::string path;  ///< of the scene file; "" for text from elsewhere
-  std::string text;  ///< as read, for the recording
+  std::string path;                    ///< of the scene file; "" for text from elsewhere
+  std::string text;                    ///< as read, for the recording
   std::vector<std::string> overrides;  ///< "--set" assignments, in the order of application
 
-  double duration = 5.0;                 ///< [s]
-  bool allow_initial_overlap = false;    ///< overlaps beyond one voxel are accepted
+  double duration = 5.0;               ///< [s]
+  bool allow_initial_overlap = false;  ///< overlaps beyond one voxel are accepted
   model::Settings settings;
   model::MaterialTable materials;        ///< index 0 is [material]
   std::vector<ShapeDescription> shapes;  ///< alphabetical by name

@@ -49,8 +49,7 @@ Pose parse_pose(std::string_view text, const std::string& path, std::size_t line
   for (std::size_t i = 0; i < n.size(); ++i) {
     const std::size_t comma = text.find(',', start);
     if ((comma == std::string_view::npos) != (i + 1 == n.size())) {
-      throw FileError(path, line, start + 1,
-                      fmt::format("a pose needs the 7 numbers {}", kHeader));
+      throw FileError(path, line, start + 1, fmt::format("a pose needs the 7 numbers {}", kHeader));
     }
     n[i] = parse_number(text.substr(start, comma - start), path, line, start + 1);
     start = comma + 1;

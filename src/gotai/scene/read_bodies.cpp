@@ -34,7 +34,8 @@ void read_pose(TableReader& table, SceneDescription& scene, SceneBody& out) {
   const Node* rotation = table.find("rotation");
   if (const Node* poses = table.find("poses")) {
     for (const Node* other : {position, com_position, rotation}) {
-      if (other != nullptr) fail(other->where, "poses = \"file\" already says where the bodies are");
+      if (other != nullptr)
+        fail(other->where, "poses = \"file\" already says where the bodies are");
     }
     out.poses_path = resolve(scene, read_text(*poses, "poses"));
     return;
@@ -100,8 +101,7 @@ SceneBody read_body(const Node& node, std::size_t number, SceneDescription& scen
     out.name = fmt::format("{} {}", scene.shapes[out.body.shape].name, number + 1);
   }
   out.body.kind = read_kind(table);
-  out.body.material =
-      read_material(table, scene).value_or(scene.shapes[out.body.shape].material);
+  out.body.material = read_material(table, scene).value_or(scene.shapes[out.body.shape].material);
   read_pose(table, scene, out);
   read_motion(table, out);
   read_velocities(table, out.body);

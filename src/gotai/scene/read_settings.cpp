@@ -43,8 +43,8 @@ void read_time(TableReader& table, model::TimeSettings& time) {
   if (const Node* step = table.find("step")) {
     if (const auto* text = std::get_if<std::string>(&step->value)) {
       if (*text != "auto") {
-        fail(step->where, fmt::format("step = \"{}\" must be \"auto\" or seconds, for example 0.01",
-                                      *text));
+        fail(step->where,
+             fmt::format("step = \"{}\" must be \"auto\" or seconds, for example 0.01", *text));
       }
       time.step = 0.0;
     } else {

@@ -16,8 +16,8 @@ std::string read_one_of(TableReader& table, std::string_view key, const std::str
   if (node == nullptr) return fallback;
   const std::string& text = read_text(*node, key);
   if (std::find(allowed.begin(), allowed.end(), text) == allowed.end()) {
-    fail(node->where, fmt::format("{} = \"{}\" is not known{}", key, text,
-                                  suggestion(text, allowed)));
+    fail(node->where,
+         fmt::format("{} = \"{}\" is not known{}", key, text, suggestion(text, allowed)));
   }
   return text;
 }
@@ -44,8 +44,7 @@ ShapeDescription read_shape(const Entry& entry, SceneDescription& scene) {
   shape.where = entry.where;
   TableReader table(entry.value, fmt::format("[shapes.{}]", entry.key));
   shape.size = table.number("size", 0.0, range::positive);
-  shape.prepared_level =
-      static_cast<int>(table.integer("prepared_level", 0, 1, voxel::kMaxLevel));
+  shape.prepared_level = static_cast<int>(table.integer("prepared_level", 0, 1, voxel::kMaxLevel));
   if (shape.prepared_level == 0) {
     shape.prepared_level =
         std::max(voxel::ShapeOptions{}.prepared_level, scene.settings.collision.level);
@@ -59,8 +58,8 @@ ShapeDescription read_shape(const Entry& entry, SceneDescription& scene) {
   const Node* mesh = table.find("mesh");
   const Node* generator = table.find("generate");
   if ((mesh == nullptr) == (generator == nullptr)) {
-    fail(entry.where, fmt::format("{} needs either mesh = \"file\" or generate = \"name\"",
-                                  table.title()));
+    fail(entry.where,
+         fmt::format("{} needs either mesh = \"file\" or generate = \"name\"", table.title()));
   }
   if (mesh != nullptr) {
     shape.mesh_path = resolve(scene, read_text(*mesh, "mesh"));
@@ -90,7 +89,8 @@ std::uint32_t read_shape_name(const Node& node, const SceneDescription& scene) {
     if (scene.shapes[i].name == name) return static_cast<std::uint32_t>(i);
     names.push_back(scene.shapes[i].name);
   }
-  if (names.empty()) fail(node.where, fmt::format("there is no shape \"{0}\"; add [shapes.{0}]", name));
+  if (names.empty())
+    fail(node.where, fmt::format("there is no shape \"{0}\"; add [shapes.{0}]", name));
   fail(node.where, fmt::format("there is no shape \"{}\"{}", name, suggestion(name, names)));
 }
 

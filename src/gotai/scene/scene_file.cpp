@@ -17,7 +17,8 @@ std::string read_whole_file(const std::string& path) {
   if (std::filesystem::is_directory(path, error)) throw FileError(path, "is a folder, not a scene");
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) throw FileError(path, "cannot be read: " + error.message());
-  if (size > kLargest) throw FileError(path, "is larger than 64 MiB; many bodies go into a pose file");
+  if (size > kLargest)
+    throw FileError(path, "is larger than 64 MiB; many bodies go into a pose file");
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();

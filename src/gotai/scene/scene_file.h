@@ -13,7 +13,8 @@ namespace gotai::scene {
 /// @param overrides  assignments "dotted.key=value", applied in order before reading
 /// @throws FileError with file, line and column for anything that is not a valid scene: bad TOML,
 ///         unknown or misspelt keys (with the nearest one), wrong types, impossible values
-SceneDescription load_scene(const std::string& path, const std::vector<std::string>& overrides = {});
+SceneDescription load_scene(const std::string& path,
+                            const std::vector<std::string>& overrides = {});
 
 /// The same for text in memory.
 /// @param path  for messages and as the base of relative paths

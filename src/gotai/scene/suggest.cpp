@@ -52,7 +52,8 @@ std::string suggestion(std::string_view text, const std::vector<std::string>& na
   const std::string_view nearest = nearest_name(text, names);
   if (!nearest.empty()) out += fmt::format("; did you mean \"{}\"?", nearest);
   const std::vector<std::string> shown(
-      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMostNames)));
+      names.begin(),
+      names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMostNames)));
   out += fmt::format("{} Allowed: {}{}", nearest.empty() ? "." : "", fmt::join(shown, ", "),
                      names.size() > kMostNames ? ", .." : "");
   return out;
