@@ -1,9 +1,34 @@
 #include "gotai/voxel/pyramid.h"
 
+#include <fmt/format.h>
+
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
+#include "gotai/core/error.h"
+
 namespace gotai::voxel {
+namespace {
+
+/// The level above: one parent per run of voxels that share it. Writes the runs' starts to
+/// first_child.
+std::vector<VoxelIndex> merge(const std::vector<VoxelIndex>& children,
+                              std::vector<std::uint32_t>& first_child) {
+  std::vector<VoxelIndex> parents;
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    const VoxelIndex parent{static_cast<std::uint16_t>(children[i][0] / 2),
+                            static_cast<std::uint16_t>(children[i][1] / 2),
+                            static_cast<std::uint16_t>(children[i][2] / 2)};
+    if (!parents.empty() && parents.back() == parent) continue;
+    parents.push_back(parent);
+    first_child.push_back(static_cast<std::uint32_t>(i));
+  }
+  first_child.push_back(static_cast<std::uint32_t>(children.size()));
+  return parents;
+}
+
+}  // namespace
 
 double VoxelGrid::voxel_edge(int level) const { return std::ldexp(edge, 1 - level); }
 
@@ -11,9 +36,47 @@ double VoxelGrid::voxel_radius(int level) const {
   return 0.5 * std::numbers::sqrt3 * voxel_edge(level);
 }
 
-Vec3 VoxelGrid::voxel_center(int level, const std::array<std::uint16_t, 3>& index) const {
+Vec3 VoxelGrid::voxel_center(int level, const VoxelIndex& index) const {
   const double s = voxel_edge(level);
   return origin + s * Vec3(index[0] + 0.5, index[1] + 0.5, index[2] + 0.5);
+}
+
+VoxelGrid grid_around(const Box3& box) {
+  if (box.isEmpty()) throw InvalidArgument("mesh", "empty", "has no triangles or tetrahedra");
+  const Vec3 center = 0.5 * (box.min() + box.max());
+  const double edge = box.sizes().maxCoeff();
+  // The negated comparisons also catch NaN.
+  if (!(edge >= 1e-30 && edge <= 1e30))
+    throw InvalidArgument("mesh", fmt::format("{}", edge),
+                          "its largest extent must be between 1e-30 and 1e30 m; check the unit");
+  if (!(center.cwiseAbs().maxCoeff() <= 1e10 * edge))
+    throw InvalidArgument("mesh", fmt::format("{}", center.cwiseAbs().maxCoeff()),
+                          "is too far from its origin for its size; move it there");
+  return {center - Vec3::Constant(0.5 * edge), edge};
+}
+
+Pyramid build_pyramid(const VoxelGrid& grid, const VoxelSet& inside) {
+  std::vector<VoxelIndex> surface = inside.surface().morton_sorted();
+  if (surface.empty())
+    throw InvalidArgument("inside", "empty", "has no voxel; prepare a finer level");
+  return pyramid_from_surface(grid, inside.level(), std::move(surface));
+}
+
+Pyramid pyramid_from_surface(const VoxelGrid& grid, int max_level,
+                             std::vector<VoxelIndex> surface) {
+  assert(!surface.empty());
+  Pyramid pyramid;
+  pyramid.grid = grid;
+  pyramid.levels.resize(static_cast<std::size_t>(max_level));
+  pyramid.levels.back().index = std::move(surface);
+  for (std::size_t h = pyramid.levels.size() - 1; h > 0; --h)
+    pyramid.levels[h - 1].index = merge(pyramid.levels[h].index, pyramid.levels[h - 1].first_child);
+  for (int h = 1; h <= max_level; ++h) {
+    PyramidLevel& level = pyramid.levels[static_cast<std::size_t>(h) - 1];
+    level.center.reserve(level.size());
+    for (const VoxelIndex& index : level.index) level.center.push_back(grid.voxel_center(h, index));
+  }
+  return pyramid;
 }
 
 }  // namespace gotai::voxel

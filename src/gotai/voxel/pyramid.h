@@ -5,11 +5,11 @@
 /// prepared level M is tested, reduced to its surface, and merged 8 to 1 into the coarser levels.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "gotai/core/types.h"
+#include "gotai/voxel/voxel_set.h"
 
 namespace gotai::voxel {
 
@@ -26,13 +26,20 @@ struct VoxelGrid {
   /// Radius of a voxel's circumscribed sphere, sqrt(3)/2 s_h [m].
   double voxel_radius(int level) const;
   /// Centre of voxel (ix, iy, iz) of a level [m], mesh frame.
-  Vec3 voxel_center(int level, const std::array<std::uint16_t, 3>& index) const;
+  Vec3 voxel_center(int level, const VoxelIndex& index) const;
+  friend bool operator==(const VoxelGrid&, const VoxelGrid&) = default;
 };
+
+/// The smallest cube around a box, with the same centre.
+/// @throws InvalidArgument when the box is empty, not finite, has no extent, or is so large or
+/// small
+///   (beyond 1e+-30 m) or so far from the origin that voxels cannot be told apart in doubles
+VoxelGrid grid_around(const Box3& box);
 
 /// The surface voxels of one level, in Morton order, so that the children of a voxel are
 /// contiguous.
 struct PyramidLevel {
-  std::vector<std::array<std::uint16_t, 3>> index;  ///< (ix, iy, iz) per voxel
+  std::vector<VoxelIndex> index;  ///< (ix, iy, iz) per voxel
   /// size() + 1 offsets: the children of voxel i are [first_child[i], first_child[i+1]) of the next
   /// level. Empty at the finest level.
   std::vector<std::uint32_t> first_child;
@@ -49,5 +56,15 @@ struct Pyramid {
   int max_level() const { return static_cast<int>(levels.size()); }
   const PyramidLevel& level(int h) const { return levels[static_cast<std::size_t>(h) - 1]; }
 };
+
+/// Takes the surface of the inside voxels at the finest level and merges it 8 to 1 up to level 1
+/// (errata 8-10).
+/// @param inside  the voxels whose centre is in the body; its level becomes max_level()
+/// @throws InvalidArgument when there is none
+Pyramid build_pyramid(const VoxelGrid& grid, const VoxelSet& inside);
+
+/// The same from the finest level's surface voxels.
+/// @param surface  level max_level, strictly ascending in Morton order, not empty
+Pyramid pyramid_from_surface(const VoxelGrid& grid, int max_level, std::vector<VoxelIndex> surface);
 
 }  // namespace gotai::voxel
