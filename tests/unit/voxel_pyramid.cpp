@@ -83,8 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, GoldenVoxels,
 geometry::Mesh kuhn_cube() {
   geometry::Mesh mesh;
   const nlohmann::json golden = test::golden("voxels.json").at("tie_cases").at(0);
-  for (const auto& v : golden.at("vertices"))
-    mesh.vertices.push_back(vec3(v));
+  for (const auto& v : golden.at("vertices")) mesh.vertices.push_back(vec3(v));
   std::array<std::uint32_t, 3> axes{1, 2, 4};
   do {
     mesh.tetrahedra.push_back({0, axes[0], axes[0] + axes[1], 7});

@@ -26,11 +26,18 @@ struct Shape {
   /// Farthest surface of any voxel sphere from the centre of mass, per level (index h - 1) [m]:
   /// rho of the corrected time step (erratum 29).
   std::vector<double> voxel_bounding_radius;
-  Hash128 content;  ///< of mesh and options: the key of the cache
+  Hash128 content;  ///< content_hash of mesh and options: the key of the cache
 };
 
+/// Hash of everything that a shape is made from and of the way it is made: two shapes with equal
+/// hashes are equal but for their names.
+Hash128 content_hash(const geometry::Mesh& mesh, const ShapeOptions& options);
+
 /// Prepares a shape: mass properties and the voxel pyramid.
-/// @throws InvalidArgument for a bad level, an open surface without tetrahedra, or no volume
+/// @param mesh  its tetrahedra define the body when there are any, else its closed surface does
+/// @throws InvalidArgument for a bad level, a vertex index out of range, a surface without
+///   tetrahedra that is not closed, no volume, or a body so thin that no voxel's centre is inside
+///   (the message names the level that would do)
 Shape make_shape(std::string name, geometry::Mesh mesh, const ShapeOptions& options);
 
 }  // namespace gotai::voxel
