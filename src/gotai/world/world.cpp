@@ -93,7 +93,7 @@ void World::substep(const model::StepPlan& plan, model::StepReport& report) {
 }
 
 void World::run_until(double end) {
-  while (time_ < end) step();
+  while (!has_reached(end)) step();
 }
 
 void World::aim_kinematic_bodies(double dt) {

@@ -95,7 +95,9 @@ class World {
   /// One step [Makino 2007, Fig. 4-9]: detect, compute impulses, update.
   /// @throws SimulationError naming step and body when the state stops being finite
   model::StepReport step();
-  /// Steps until time() >= end [s].
+  /// Has the world come to this time [s]? Sums of equal steps may miss it by round-off.
+  bool has_reached(double end) const { return end - time_ <= 1e-9 * last_dt_; }
+  /// Steps until has_reached(end).
   void run_until(double end);
   void add_observer(Observer observer) { observers_.push_back(std::move(observer)); }
 
