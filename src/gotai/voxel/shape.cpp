@@ -92,13 +92,20 @@ Shape make_shape(std::string name, geometry::Mesh mesh, const ShapeOptions& opti
   const VoxelSet inside = voxels_inside(mesh, grid, options.prepared_level);
   if (inside.empty()) throw_too_thin(mesh, grid, options.prepared_level);
   shape.pyramid = build_pyramid(grid, inside);
-  shape.bounding_radius = bounding_radius(mesh, shape.mass.center_of_mass);
-  for (int h = 1; h <= shape.pyramid.max_level(); ++h)
-    shape.voxel_bounding_radius.push_back(voxel_bounding_radius(
-        shape.pyramid.level(h), grid.voxel_radius(h), shape.mass.center_of_mass));
   shape.name = std::move(name);
   shape.mesh = std::move(mesh);
+  derive_radii(shape);
   return shape;
+}
+
+void derive_radii(Shape& shape) {
+  const Pyramid& pyramid = shape.pyramid;
+  const Vec3& center = shape.mass.center_of_mass;
+  shape.bounding_radius = bounding_radius(shape.mesh, center);
+  shape.voxel_bounding_radius.clear();
+  for (int h = 1; h <= pyramid.max_level(); ++h)
+    shape.voxel_bounding_radius.push_back(
+        voxel_bounding_radius(pyramid.level(h), pyramid.grid.voxel_radius(h), center));
 }
 
 }  // namespace gotai::voxel

@@ -40,4 +40,7 @@ Hash128 content_hash(const geometry::Mesh& mesh, const ShapeOptions& options);
 ///   (the message names the level that would do)
 Shape make_shape(std::string name, geometry::Mesh mesh, const ShapeOptions& options);
 
+/// Sets bounding_radius and voxel_bounding_radius from mesh, mass and pyramid.
+void derive_radii(Shape& shape);
+
 }  // namespace gotai::voxel
