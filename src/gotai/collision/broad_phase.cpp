@@ -1,0 +1,267 @@
+#include "gotai/collision/broad_phase.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace gotai::collision {
+
+namespace {
+
+// Octaves of body sizes that get a counter of their own; sizes beyond share the outermost ones.
+constexpr int kOctaves = 128;
+
+/// Smallest and largest diameter of the bodies of one octave of sizes.
+struct SizeRange {
+  double min = std::numeric_limits<double>::infinity();
+  double max = 0.0;
+
+  bool empty() const { return max == 0.0; }
+};
+
+std::size_t octave(double diameter) {
+  return static_cast<std::size_t>(std::clamp(std::ilogb(diameter) + kOctaves / 2, 0, kOctaves - 1));
+}
+
+/// Consecutive cells along x around one, wrapped: one or two runs of [first, last].
+struct Runs {
+  std::array<std::array<std::uint32_t, 2>, 2> run;
+  std::size_t count;
+};
+
+/// x - 1 .. x + 1.
+Runs three_cells(std::uint32_t x, std::uint32_t mask) {
+  if (x == 0) return {{{{mask, mask}, {0, 1}}}, 2};
+  if (x == mask) return {{{{mask - 1, mask}, {0, 0}}}, 2};
+  return {{{{x - 1, x + 1}}}, 1};
+}
+
+/// Can a sphere reach a face of an open box? Conservative: the walls are taken as endless.
+bool reaches_container(const Vec3& center, double reach, const Vec3& half_extent) {
+  if (center.z() <= reach) return true;
+  if (center.z() - reach > half_extent.z()) return false;
+  return half_extent.x() - std::abs(center.x()) <= reach ||
+         half_extent.y() - std::abs(center.y()) <= reach;
+}
+
+}  // namespace
+
+BroadPhase::Cell BroadPhase::Grid::cell_of(const Entry& e) const {
+  // Far beyond any world; keeps the conversion to an integer defined.
+  static constexpr double kLimit = 1e15;
+  const auto wrap = [this](double x, std::uint32_t axis_mask) {
+    const double i = std::clamp(std::floor(x / cell), -kLimit, kLimit);
+    return static_cast<std::uint32_t>(static_cast<std::int64_t>(i) & axis_mask);
+  };
+  return {wrap(e.x, mask[0]), wrap(e.y, mask[1]), wrap(e.z, mask[2])};
+}
+
+void BroadPhase::find_pairs(const model::BodyState& bodies, std::span<const double> radius,
+                            double margin, std::vector<BodyPair>& out) {
+  found_.clear();
+  make_size_classes(bodies, radius, margin);
+  for (std::size_t g = 0; g < grid_count_; ++g) {
+    fill_grid(grids_[g]);
+    pair_within(grids_[g], margin);
+  }
+  for (std::size_t fine = 0; fine < grid_count_; ++fine) {
+    for (std::size_t coarse = fine + 1; coarse < grid_count_; ++coarse) {
+      pair_across(grids_[fine], grids_[coarse], margin);
+    }
+  }
+  pair_unbounded(bodies, radius, margin);
+  sort_pairs(bodies.size(), out);
+}
+
+void BroadPhase::make_size_classes(const model::BodyState& bodies, std::span<const double> radius,
+                                   double margin) {
+  std::array<SizeRange, kOctaves> sizes{};
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies.geometry[i] != model::Geometry::shape) continue;
+    const double diameter = 2.0 * radius[i] + margin;
+    SizeRange& range = sizes[octave(diameter)];
+    range.min = std::min(range.min, diameter);
+    range.max = std::max(range.max, diameter);
+  }
+
+  // From fine to coarse: an octave joins the class before it when the sizes stay within a factor
+  // of two, so that nearly equal bodies on both sides of a power of two share one grid.
+  std::array<std::size_t, kOctaves> class_of{};
+  grid_count_ = 0;
+  double class_min = 0.0;
+  for (std::size_t o = 0; o < sizes.size(); ++o) {
+    if (sizes[o].empty()) continue;
+    if (grid_count_ == 0 || sizes[o].max > 2.0 * class_min) {
+      if (grids_.size() == grid_count_) grids_.emplace_back();
+      grids_[grid_count_].entries.clear();
+      grids_[grid_count_].cell = 0.0;
+      ++grid_count_;
+      class_min = sizes[o].min;
+    }
+    class_of[o] = grid_count_ - 1;
+    Grid& grid = grids_[grid_count_ - 1];
+    // The allowance keeps bodies that touch in neighbouring cells under rounding.
+    grid.cell = std::max(grid.cell, 1.000001 * sizes[o].max);
+  }
+
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies.geometry[i] != model::Geometry::shape) continue;
+    const auto body = static_cast<model::BodyIndex>(i);
+    const Vec3& x = bodies.x_W[i];
+    grids_[class_of[octave(2.0 * radius[i] + margin)]].entries.push_back(
+        {x.x(), x.y(), x.z(), radius[i], body, bodies.is_dynamic(body)});
+  }
+}
+
+void BroadPhase::fill_grid(Grid& grid) {
+  std::array<double, 3> low;
+  std::array<double, 3> high;
+  low.fill(std::numeric_limits<double>::infinity());
+  high.fill(-std::numeric_limits<double>::infinity());
+  for (const Entry& e : grid.entries) {
+    const std::array<double, 3> x{e.x, e.y, e.z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], x[axis]);
+      high[axis] = std::max(high[axis], x[axis]);
+    }
+  }
+
+  // Cells as the extent asks for, at most about four per body; at least four along an axis, so
+  // that the three neighbours of a wrapped cell are different ones.
+  const std::uint64_t limit = std::max<std::uint64_t>(64, 4 * std::bit_ceil(grid.entries.size()));
+  std::array<std::uint64_t, 3> count{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double cells = std::clamp((high[axis] - low[axis]) / grid.cell + 2.0, 4.0, 1048576.0);
+    count[axis] = std::bit_ceil(static_cast<std::uint64_t>(cells));
+  }
+  while (count[0] * count[1] * count[2] > limit) *std::max_element(count.begin(), count.end()) /= 2;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    grid.mask[axis] = static_cast<std::uint32_t>(count[axis] - 1);
+  }
+  grid.stride = {1, static_cast<std::uint32_t>(count[0]),
+                 static_cast<std::uint32_t>(count[0] * count[1])};
+
+  // Counting sort by cell.
+  const std::size_t cells = count[0] * count[1] * count[2];
+  grid.begin.assign(cells + 1, 0);
+  cell_.resize(grid.entries.size());
+  for (std::size_t i = 0; i < grid.entries.size(); ++i) {
+    cell_[i] = grid.index(grid.cell_of(grid.entries[i]));
+    ++grid.begin[cell_[i]];
+  }
+  std::uint32_t sum = 0;
+  for (std::uint32_t& b : grid.begin) b = (sum += b);
+  std::swap(unsorted_, grid.entries);
+  grid.entries.resize(unsorted_.size());
+  for (std::size_t i = unsorted_.size(); i-- > 0;) {
+    grid.entries[--grid.begin[cell_[i]]] = unsorted_[i];
+  }
+}
+
+void BroadPhase::test(const Entry& a, const Entry& b, double margin) {
+  const double dx = a.x - b.x;
+  const double dy = a.y - b.y;
+  const double dz = a.z - b.z;
+  const double reach = a.r + b.r + margin;
+  // The allowance keeps spheres that touch exactly.
+  if (dx * dx + dy * dy + dz * dz > reach * reach * (1.0 + 1e-12)) return;
+  if (!a.dynamic && !b.dynamic) return;
+  const bool a_first = a.dynamic == b.dynamic ? a.body < b.body : a.dynamic;
+  found_.push_back(a_first ? BodyPair{a.body, b.body} : BodyPair{b.body, a.body});
+}
+
+void BroadPhase::pair_within(const Grid& grid, double margin) {
+  const auto against = [&](std::uint32_t begin, std::uint32_t end, std::uint32_t first_cell,
+                           std::uint32_t last_cell) {
+    const std::uint32_t other_begin = grid.begin[first_cell];
+    const std::uint32_t other_end = grid.begin[last_cell + 1];
+    for (std::uint32_t i = begin; i < end; ++i) {
+      for (std::uint32_t j = other_begin; j < other_end; ++j) {
+        test(grid.entries[i], grid.entries[j], margin);
+      }
+    }
+  };
+  // Half of the 26 neighbours: every pair of cells is visited once.
+  constexpr std::array<std::array<std::uint32_t, 2>, 4> kRows{
+      {{1, 0}, {~0U, 1}, {0, 1}, {1, 1}}};  // (dy, dz); ~0 wraps to -1
+  for (std::uint32_t z = 0; z <= grid.mask[2]; ++z) {
+    for (std::uint32_t y = 0; y <= grid.mask[1]; ++y) {
+      for (std::uint32_t x = 0; x <= grid.mask[0]; ++x) {
+        const std::uint32_t cell = grid.index({x, y, z});
+        const std::uint32_t begin = grid.begin[cell];
+        const std::uint32_t end = grid.begin[cell + 1];
+        if (begin == end) continue;
+        for (std::uint32_t i = begin; i < end; ++i) {
+          for (std::uint32_t j = i + 1; j < end; ++j) {
+            test(grid.entries[i], grid.entries[j], margin);
+          }
+        }
+        const std::uint32_t next = grid.index({(x + 1) & grid.mask[0], y, z});
+        against(begin, end, next, next);
+        const Runs runs = three_cells(x, grid.mask[0]);
+        for (const auto& [dy, dz] : kRows) {
+          const std::uint32_t row =
+              grid.index({0, (y + dy) & grid.mask[1], (z + dz) & grid.mask[2]});
+          for (std::size_t r = 0; r < runs.count; ++r) {
+            against(begin, end, row + runs.run[r][0], row + runs.run[r][1]);
+          }
+        }
+      }
+    }
+  }
+}
+
+void BroadPhase::pair_across(const Grid& fine, const Grid& coarse, double margin) {
+  for (const Entry& e : fine.entries) {
+    const Cell c = coarse.cell_of(e);
+    const Runs runs = three_cells(c[0], coarse.mask[0]);
+    for (std::uint32_t dz = 0; dz < 3; ++dz) {
+      for (std::uint32_t dy = 0; dy < 3; ++dy) {
+        const std::uint32_t row =
+            coarse.index({0, (c[1] + dy - 1) & coarse.mask[1], (c[2] + dz - 1) & coarse.mask[2]});
+        for (std::size_t r = 0; r < runs.count; ++r) {
+          const std::uint32_t end = coarse.begin[row + runs.run[r][1] + 1];
+          for (std::uint32_t j = coarse.begin[row + runs.run[r][0]]; j < end; ++j) {
+            test(e, coarse.entries[j], margin);
+          }
+        }
+      }
+    }
+  }
+}
+
+void BroadPhase::pair_unbounded(const model::BodyState& bodies, std::span<const double> radius,
+                                double margin) {
+  for (std::size_t u = 0; u < bodies.size(); ++u) {
+    if (bodies.geometry[u] == model::Geometry::shape) continue;
+    const Vec3& x_U = bodies.x_W[u];
+    const Mat3 R_UW = bodies.q_WB[u].toRotationMatrix().transpose();
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const auto body = static_cast<model::BodyIndex>(i);
+      if (bodies.geometry[i] != model::Geometry::shape || !bodies.is_dynamic(body)) continue;
+      const double reach = radius[i] * (1.0 + 1e-12) + margin;
+      const Vec3 center = R_UW * (bodies.x_W[i] - x_U);
+      const bool touches = bodies.geometry[u] == model::Geometry::plane
+                               ? center.z() <= reach
+                               : reaches_container(center, reach, bodies.half_extent[u]);
+      if (touches) found_.push_back({body, static_cast<model::BodyIndex>(u)});
+    }
+  }
+}
+
+void BroadPhase::sort_pairs(std::size_t body_count, std::vector<BodyPair>& out) {
+  // Counting sort by body_a; the few pairs of one body are then sorted by body_b.
+  first_.assign(body_count + 1, 0);
+  for (const BodyPair& p : found_) ++first_[p.body_a];
+  std::uint32_t sum = 0;
+  for (std::uint32_t& f : first_) f = (sum += f);
+  out.resize(found_.size());
+  for (std::size_t i = found_.size(); i-- > 0;) out[--first_[found_[i].body_a]] = found_[i];
+  for (std::size_t a = 0; a < body_count; ++a) {
+    std::sort(out.begin() + first_[a], out.begin() + first_[a + 1],
+              [](const BodyPair& p, const BodyPair& q) { return p.body_b < q.body_b; });
+  }
+}
+
+}  // namespace gotai::collision
