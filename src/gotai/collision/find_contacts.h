@@ -2,6 +2,7 @@
 /// Where bodies touch: broad phase, then the collision model that the settings name.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -18,6 +19,8 @@ namespace gotai::collision {
 struct SearchStatistics {
   std::uint32_t candidate_pairs = 0;  ///< from the broad phase
   std::uint64_t tests = 0;            ///< sphere-sphere and sphere-plane tests
+  /// The same by level (Fig. 6-8): tests_per_level[h - 1] at level h.
+  std::array<std::uint64_t, voxel::kMaxLevel> tests_per_level{};
 };
 
 /// Storage that is reused between searches. Not state: deleting it changes no bit of any result.
@@ -39,7 +42,8 @@ class CollisionCache {
 /// @param shapes    indexed by BodyState::shape
 /// @param margin    contacts are found up to this gap [m], >= 0
 /// @param[out] out  sorted by (body_a, body_b, feature); storage is reused
-/// @throws InvalidArgument when the level is finer than a shape's prepared level
+/// @throws InvalidArgument when the level is finer than a shape's prepared level, naming the shape
+///         and both levels
 SearchStatistics find_contacts(const model::BodyState& bodies,
                                std::span<const std::shared_ptr<const voxel::Shape>> shapes,
                                const model::CollisionSettings& settings, double margin,
