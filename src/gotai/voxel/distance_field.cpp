@@ -1,0 +1,223 @@
+#include "gotai/voxel/distance_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gotai::voxel {
+namespace {
+
+constexpr double kBandCells = 2.5;   // half width of the band that bricks cover
+constexpr double kRangeCells = 5.0;  // values in bricks are clamped to +-this many cells: all
+                                     // corners of cells in the band are nearer
+constexpr double kHalfDiagonal = 0.8660254037844387;
+
+std::int16_t quantize(double value, double scale) {
+  return static_cast<std::int16_t>(std::lround(std::clamp(value / scale, -32767.0, 32767.0)));
+}
+
+// Distances along a row of lattice nodes after another, each query starting from the triangle that
+// was nearest before.
+class RowSampler {
+ public:
+  explicit RowSampler(const SignedDistance& surface) : surface_(surface) {}
+
+  // Signed distance, or +-limit where the surface is farther than limit.
+  double sample(const Vec3& x, double limit) {
+    const ClosestPoint nearest = surface_.query(x, limit, hint_);
+    if (!std::isfinite(nearest.distance)) return sign_ * limit;
+    hint_ = nearest.triangle;
+    sign_ = nearest.distance < 0.0 ? -1.0 : 1.0;
+    return nearest.distance;
+  }
+  void start(double distance, std::uint32_t hint) {
+    sign_ = distance < 0.0 ? -1.0 : 1.0;
+    hint_ = hint;
+  }
+
+ private:
+  const SignedDistance& surface_;
+  std::uint32_t hint_ = SignedDistance::kNoTriangle;
+  double sign_ = 1.0;
+};
+
+// Fills one brick. Returns whether the surface may come nearer than the band anywhere in it.
+// Rows run to and fro, so that neighbours in time are neighbours in space: the sign of a node that
+// is farther than the range is that of the node before, since the surface lies between no two of
+// them.
+bool sample_brick(const SignedDistance& surface, const Vec3& low, const DistanceField& field,
+                  const ClosestPoint& center, std::int16_t* out) {
+  const double cell = field.cell;
+  const double range = kRangeCells * cell;
+  RowSampler sampler(surface);
+  // The first node's sign is not known from a neighbour: ask without a limit.
+  sampler.start(center.distance, center.triangle);
+  const double first = sampler.sample(low, std::numeric_limits<double>::infinity());
+  sampler.start(first, center.triangle);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < kBrickNodes; ++k) {
+    for (int row = 0; row < kBrickNodes; ++row) {
+      const int j = k % 2 == 0 ? row : kBrickCells - row;
+      for (int step = 0; step < kBrickNodes; ++step) {
+        const int i = (k * kBrickNodes + row) % 2 == 0 ? step : kBrickCells - step;
+        const double d = sampler.sample(low + cell * Vec3(i, j, k), range);
+        nearest = std::min(nearest, std::abs(d));
+        out[(k * kBrickNodes + j) * kBrickNodes + i] = quantize(d, field.scale);
+      }
+    }
+  }
+  return nearest <= field.band + kHalfDiagonal * cell;
+}
+
+void sample_coarse(const SignedDistance& surface, const Vec3& low, DistanceField& field) {
+  const int n = field.coarse_nodes();
+  const double step = kCoarseCells * static_cast<double>(field.cell);
+  field.coarse.assign(
+      static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * static_cast<std::size_t>(n) + 1,
+      0);
+  std::size_t at = 0;
+  RowSampler sampler(surface);
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const double d =
+            sampler.sample(low + step * Vec3(i, j, k), std::numeric_limits<double>::infinity());
+        field.coarse[at++] = quantize(d, field.coarse_scale);
+      }
+    }
+  }
+}
+
+void sample_bricks(const SignedDistance& surface, const Vec3& low, DistanceField& field) {
+  const int n = field.bricks;
+  const double cell = field.cell;
+  const double brick_edge = kBrickCells * cell;
+  field.brick.assign(static_cast<std::size_t>(n * n * n), -1);
+  std::vector<std::int16_t> values(kBrickStride, 0);
+  std::int32_t count = 0;
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const Vec3 corner = low + brick_edge * Vec3(i, j, k);
+        const ClosestPoint center = surface.query(corner + Vec3::Constant(0.5 * brick_edge),
+                                                  field.band + kHalfDiagonal * brick_edge);
+        if (!std::isfinite(center.distance)) continue;
+        if (!sample_brick(surface, corner, field, center, values.data())) continue;
+        field.brick[static_cast<std::size_t>((k * n + j) * n + i)] = count++;
+        field.values.insert(field.values.end(), values.begin(), values.end());
+      }
+    }
+  }
+}
+
+// The gradient of a trilinear function is linear along each axis, so its length is convex along
+// each axis and largest at a corner of the cell.
+float largest_slope(const DistanceField& field) {
+  constexpr int kStep[3] = {1, kBrickNodes, kBrickNodes * kBrickNodes};
+  std::int64_t largest = 0;
+  for (std::size_t base = 0; base < field.values.size(); base += kBrickStride) {
+    for (int k = 0; k < kBrickNodes; ++k) {
+      for (int j = 0; j < kBrickNodes; ++j) {
+        for (int i = 0; i < kBrickNodes; ++i) {
+          const int index[3] = {i, j, k};
+          const std::int16_t* v =
+              field.values.data() + base + i * kStep[0] + j * kStep[1] + k * kStep[2];
+          std::int64_t squared = 0;
+          for (int axis = 0; axis < 3; ++axis) {
+            std::int64_t difference = 0;
+            if (index[axis] < kBrickCells) difference = std::abs(v[kStep[axis]] - *v);
+            if (index[axis] > 0) {
+              difference = std::max<std::int64_t>(difference, std::abs(v[-kStep[axis]] - *v));
+            }
+            squared += difference * difference;
+          }
+          largest = std::max(largest, squared);
+        }
+      }
+    }
+  }
+  return static_cast<float>(std::sqrt(static_cast<double>(largest)) * field.scale / field.cell *
+                            (1.0 + 1e-5));
+}
+
+// Interpolates between the eight corners of a cell. Strides in values.
+FieldValue interpolate(const std::int16_t* v, int stride_y, int stride_z, const Vec3& t,
+                       double scale, double cell) {
+  const auto corner = [&](int i, int j, int k) {
+    return static_cast<double>(v[i + j * stride_y + k * stride_z]);
+  };
+  double value = 0.0;
+  Vec3 slope = Vec3::Zero();
+  for (int k = 0; k < 2; ++k) {
+    for (int j = 0; j < 2; ++j) {
+      for (int i = 0; i < 2; ++i) {
+        const double wx = i ? t.x() : 1.0 - t.x();
+        const double wy = j ? t.y() : 1.0 - t.y();
+        const double wz = k ? t.z() : 1.0 - t.z();
+        const double f = corner(i, j, k);
+        value += wx * wy * wz * f;
+        slope += f * Vec3((i ? 1 : -1) * wy * wz, wx * (j ? 1 : -1) * wz, wx * wy * (k ? 1 : -1));
+      }
+    }
+  }
+  return {value * scale, slope * (scale / cell), false};
+}
+
+}  // namespace
+
+DistanceField make_distance_field(const SignedDistance& surface, const Vec3& center, double edge,
+                                  int level) {
+  DistanceField field;
+  field.cell = static_cast<float>(std::ldexp(edge, 1 - level));
+  field.bricks = ((1 << (level - 1)) + 2 * kFieldPadding + kBrickCells - 1) / kBrickCells;
+  const double cell = field.cell;
+  field.low = static_cast<float>(-0.5 * cell * field.cells());
+  field.band = static_cast<float>(kBandCells * cell);
+  field.trusted = static_cast<float>((kRangeCells - 2.0 * kHalfDiagonal) * cell);
+  field.scale = static_cast<float>(kRangeCells * cell / 32767.0);
+  field.coarse_scale = static_cast<float>(2.0 * cell * field.cells() / 32767.0);
+  const Vec3 low = center + Vec3::Constant(field.low);
+  sample_coarse(surface, low, field);
+  sample_bricks(surface, low, field);
+  field.slope = largest_slope(field);
+  return field;
+}
+
+FieldValue evaluate(const DistanceField& field, const Vec3& x) {
+  const double cell = field.cell;
+  const double size = field.cells();
+  const Vec3 lattice = (x - Vec3::Constant(field.low)) / cell;
+  const Vec3 inside = lattice.cwiseMax(0.0).cwiseMin(size * (1.0 - 1e-7));
+  const Eigen::Vector3i c = inside.cast<int>();
+  const Eigen::Vector3i b = c / kBrickCells;
+  const std::int32_t brick =
+      field.brick[static_cast<std::size_t>((b.z() * field.bricks + b.y()) * field.bricks + b.x())];
+  FieldValue result{std::numeric_limits<double>::infinity(), Vec3::Zero(), false};
+  if (brick >= 0) {
+    const Eigen::Vector3i l = c - kBrickCells * b;
+    const std::int16_t* v = field.values.data() +
+                            static_cast<std::ptrdiff_t>(brick) * kBrickStride +
+                            (l.z() * kBrickNodes + l.y()) * kBrickNodes + l.x();
+    result = interpolate(v, kBrickNodes, kBrickNodes * kBrickNodes, inside - c.cast<double>(),
+                         field.scale, cell);
+    result.in_band = std::abs(result.distance) <= field.trusted;
+  }
+  if (!result.in_band) {
+    const int n = field.coarse_nodes();
+    const Eigen::Vector3i l = c / kCoarseCells;
+    const std::int16_t* v = field.coarse.data() + (l.z() * n + l.y()) * n + l.x();
+    const Vec3 t = inside / kCoarseCells - l.cast<double>();
+    result = interpolate(v, n, n * n, t, field.coarse_scale, kCoarseCells * cell);
+    result.in_band = false;
+  }
+  const Vec3 beyond = (lattice - inside) * cell;
+  const double distance = beyond.norm();
+  if (distance > 1e-6 * cell) {
+    const double before = result.distance;
+    result.distance = before + distance;
+    result.gradient = (result.gradient + beyond / distance).normalized();
+  }
+  return result;
+}
+
+}  // namespace gotai::voxel
