@@ -1,0 +1,58 @@
+/// @file
+/// The constraint-based method, the thesis's choice [Makino 2007, sections 2.4-2.7, 4.3].
+#pragma once
+
+#include <vector>
+
+#include "gotai/impulse/assembly.h"
+#include "gotai/impulse/cone_problem.h"
+#include "gotai/impulse/method.h"
+
+namespace gotai::impulse {
+
+/// Solves all contacts of an island together: 0 <= p _|_ A p + q >= 0 with Coulomb's friction.
+///
+/// Reads every contact that touches, and those that come close within the step.
+/// Guarantees: no contact approaches afterwards (up to the residual, which is reported); every
+/// approaching contact separates with at least e times its speed; friction within the cone, opposed
+/// to sliding, never reversing it; no energy gain for one restitution per island; redundant
+/// contacts share the load evenly, by area; the same bits for any number of threads.
+/// Does not: propagate shocks one after the other (Newton's cradle leaves with -1/3, 2/3, 2/3;
+/// erratum 48), nor undo overlap.
+class ConstraintMethod : public ImpulseMethod {
+ public:
+  explicit ConstraintMethod(const model::Settings& settings);
+
+  model::StepPlan plan(const model::BodyState& bodies, double dt) const override;
+  void prepare(const model::BodyState& bodies, const model::ContactSet& contacts,
+               const model::MaterialTable& materials, const model::StepPlan& plan,
+               const model::ContactMemory& memory) override;
+  void solve(const model::BodyState& bodies, const std::vector<double>& gap,
+             model::Update& update) override;
+  void finish(const model::BodyState& bodies, model::Update& update,
+              model::ContactMemory& memory) override;
+  model::SolveReport report() const override { return report_; }
+
+ private:
+  /// Storage for one island.
+  struct Work {
+    ConeProblem problem;
+    std::vector<Mat3> frame;  // contact frames, W
+    std::vector<Vec3> guess;  // contact frames [N s]
+    ConeSolution solution;
+  };
+
+  void solve_island(const model::BodyState& bodies, const Island& island,
+                    const std::vector<double>& gap, Work& work) const;
+
+  model::Settings settings_;
+  const model::ContactSet* contacts_ = nullptr;  // of the step
+  ContactTargets targets_;
+  std::vector<Vec3> warm_impulse_;  // per contact, of the last step [N s], W
+  std::vector<Island> islands_;
+  std::vector<Work> work_;  // per island
+  double dt_ = 0.0;
+  model::SolveReport report_;
+};
+
+}  // namespace gotai::impulse
