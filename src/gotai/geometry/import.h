@@ -47,8 +47,15 @@ std::string read_bytes(const std::filesystem::path& path);
 /// Recognises the format and reads it.
 Import import(const Source& source);
 
+Import read_gltf(const Source& source);
 Import read_gmsh(const Source& source);
+Import read_medit(const Source& source);
 Import read_obj(const Source& source);
+Import read_off(const Source& source);
+Import read_ply(const Source& source);
 Import read_stl(const Source& source);
+/// The two files of a TetGen mesh.
+Import read_tetgen(const Source& nodes, const Source& elements);
+Import read_vtk(const Source& source);
 
 }  // namespace gotai::geometry::detail

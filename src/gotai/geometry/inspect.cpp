@@ -7,6 +7,7 @@
 #include "gotai/core/error.h"
 #include "gotai/geometry/edges.h"
 #include "gotai/geometry/mesh_report.h"
+#include "gotai/geometry/self_intersections.h"
 #include "gotai/geometry/tetrahedra.h"
 
 namespace gotai::geometry {
@@ -94,6 +95,9 @@ MeshReport inspect(const Mesh& mesh) {
     report.extents = box.sizes();
     report.volume = volume_of(mesh, box);
   }
+  const SelfIntersections crossings = find_self_intersections(mesh);
+  report.self_intersections = crossings.pairs;
+  report.self_intersections_complete = crossings.complete;
   return report;
 }
 

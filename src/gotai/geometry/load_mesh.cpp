@@ -102,6 +102,10 @@ void add_warnings(MeshReport& report) {
     w.push_back(plural(report.misoriented_edges,
                        "edge joins two faces that disagree on which side is out",
                        "edges join two faces that disagree on which side is out"));
+  if (report.self_intersections > 0)
+    w.push_back(fmt::format("the surface crosses itself: {}{} pairs of triangles meet",
+                            report.self_intersections_complete ? "" : "at least ",
+                            report.self_intersections));
   if (smallest <= 1e-9 * largest)
     w.push_back("the mesh is flat: it encloses no volume");
   else if (report.closed && report.volume < 0.0)

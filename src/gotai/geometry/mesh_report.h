@@ -40,6 +40,9 @@ struct MeshReport {
   std::size_t boundary_edges = 0;      ///< edges with one face: holes
   std::size_t non_manifold_edges = 0;  ///< edges with three or more faces
   std::size_t misoriented_edges = 0;   ///< edges with two faces that run it in the same direction
+  /// Pairs of triangles that meet beyond what they share; see find_self_intersections().
+  std::size_t self_intersections = 0;
+  bool self_intersections_complete = true;  ///< false: there may be more than that
   ///@}
 
   /// @name Defects. Counted in the file's mesh after welding, before any repair.
