@@ -131,7 +131,7 @@ seed = 7
   EXPECT_EQ(scene.shapes[0].material, 1u);
   EXPECT_EQ(scene.shapes[0].generator.size, 1.0);
   EXPECT_EQ(scene.shapes[1].mesh_path, "folder/meshes/part.obj");
-  EXPECT_EQ(scene.shapes[1].unit, "mm");
+  EXPECT_EQ(scene.shapes[1].load.unit, "mm");
   EXPECT_EQ(scene.planes[0].normal, Vec3::UnitZ());
   EXPECT_EQ(scene.containers[0].material, 2u);
 
@@ -201,7 +201,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"[record]\nfps = 0\n", "2:7", "must be > 0"},
         Mistake{"[shapes.a]\nsize = 1\n", "1:9", "needs either mesh"},
         Mistake{"[shapes.a]\ngenerate = \"hexapot\"\n", "2:12", "did you mean \"hexapod\"?"},
-        Mistake{"[shapes.a]\nmesh = \"a.obj\"\nunit = \"km\"\n", "3:8", "unit = \"km\""},
+        Mistake{"[shapes.a]\nmesh = \"a.obj\"\nunit = \"mil\"\n", "3:8", "Allowed: um, mm, cm"},
         Mistake{"[shapes.a]\ngenerate = \"cube\"\nunit = \"mm\"\n", "3:1", "unknown key \"unit\""},
         Mistake{"[shapes.a]\ngenerate = \"cube\"\nprepared_level = 4\n", "3:18", "is coarser than"},
         Mistake{"[[plane]]\nnormal = [0, 0, 0]\n", "2:10", "must not be zero"},

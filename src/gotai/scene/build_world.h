@@ -44,8 +44,7 @@ struct BuiltScene {
 BuiltScene build_world(const SceneDescription& scene, const BuildOptions& options = {});
 
 /// The shape that a scene asks for, without a world.
-voxel::Shape prepare_shape(const ShapeDescription& description, int level,
-                           const BuildOptions& options = {});
+voxel::Shape prepare_shape(const ShapeDescription& description, const BuildOptions& options = {});
 
 /// Overlaps of a world's present poses, deepest first.
 std::vector<InitialOverlap> find_overlaps(const World& world);

@@ -10,6 +10,7 @@
 
 #include "gotai/core/types.h"
 #include "gotai/geometry/generate.h"
+#include "gotai/geometry/load_mesh.h"
 #include "gotai/model/body_state.h"
 #include "gotai/model/material.h"
 #include "gotai/model/settings.h"
@@ -24,11 +25,9 @@ struct ShapeDescription {
   Location where;
   std::string mesh_path;                 ///< "" when generated
   geometry::GeneratorOptions generator;  ///< when mesh_path is ""; its size is applied by it
-  std::string unit = "m";                ///< files: "m", "cm", "mm", "in", "ft"
-  std::string up = "z";                  ///< files: axis that points up, "x", "y", "z"
-  double scale = 1.0;                    ///< files: further factor on all lengths
+  geometry::LoadOptions load;            ///< files: unit, up axis, scale
   double size = 0.0;                     ///< files: largest extent after scaling [m]; 0 keeps it
-  int prepared_level = 0;                ///< M; 0 means the level that [collision] asks for
+  int prepared_level = 7;                ///< M of the pyramid
   std::uint32_t material = 0;            ///< of bodies that name none
 };
 

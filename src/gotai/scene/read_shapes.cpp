@@ -63,9 +63,9 @@ ShapeDescription read_shape(const Entry& entry, SceneDescription& scene) {
   }
   if (mesh != nullptr) {
     shape.mesh_path = resolve(scene, read_text(*mesh, "mesh"));
-    shape.unit = read_one_of(table, "unit", shape.unit, {"m", "cm", "mm", "in", "ft"});
-    shape.up = read_one_of(table, "up", shape.up, {"x", "y", "z"});
-    shape.scale = table.number("scale", shape.scale, range::positive);
+    shape.load.unit = read_one_of(table, "unit", shape.load.unit, geometry::length_unit_names());
+    shape.load.up = read_one_of(table, "up", shape.load.up, {"x", "y", "z"});
+    shape.load.scale = table.number("scale", shape.load.scale, range::positive);
   } else {
     read_generator(table, shape);
   }
