@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -24,6 +25,14 @@ template <typename T>
 std::string raw_bytes(T value) {
   std::string bytes(sizeof(T), '\0');
   std::memcpy(bytes.data(), &value, sizeof(T));
+  return bytes;
+}
+
+/// The same in the other byte order.
+template <typename T>
+std::string swapped_bytes(T value) {
+  std::string bytes = raw_bytes(value);
+  std::reverse(bytes.begin(), bytes.end());
   return bytes;
 }
 
