@@ -20,6 +20,7 @@ using Shapes = std::span<const std::shared_ptr<const voxel::Shape>>;
 /// Contacts of consecutive pairs, found by one task.
 struct Chunk {
   model::ContactSet contacts;
+  std::size_t begin = 0;  // place of its first contact among all
   TestCounts tests{};
 };
 
@@ -39,24 +40,36 @@ void check_levels(const model::BodyState& bodies, Shapes shapes, int level) {
   }
 }
 
-template <typename T>
-void append(std::vector<T>& to, const std::vector<T>& from) {
-  to.insert(to.end(), from.begin(), from.end());
+/// Copies the contacts of a chunk to their place in the whole.
+void place(const model::ContactSet& from, std::size_t begin, model::ContactSet& to) {
+  const auto at = static_cast<std::ptrdiff_t>(begin);
+  const auto copy = [at](const auto& source, auto& target) {
+    std::copy(source.begin(), source.end(), target.begin() + at);
+  };
+  copy(from.point_W, to.point_W);
+  copy(from.normal_W, to.normal_W);
+  copy(from.gap, to.gap);
+  copy(from.anchor_A, to.anchor_A);
+  copy(from.anchor_B, to.anchor_B);
+  copy(from.area, to.area);
+  copy(from.feature, to.feature);
 }
 
-/// Appends the contacts of a chunk; its pairs' offsets move along.
-void append(model::ContactSet& to, const model::ContactSet& from) {
-  const auto offset = static_cast<std::uint32_t>(to.size());
-  for (const model::ContactPair& p : from.pairs) {
-    to.pairs.push_back({p.body_a, p.body_b, p.begin + offset, p.end + offset});
+/// Joins the chunks in their order.
+void join(std::span<Chunk> chunks, model::ContactSet& out) {
+  out.pairs.clear();
+  std::size_t total = 0;
+  for (Chunk& chunk : chunks) {
+    chunk.begin = total;
+    const auto offset = static_cast<std::uint32_t>(total);
+    for (const model::ContactPair& p : chunk.contacts.pairs) {
+      out.pairs.push_back({p.body_a, p.body_b, p.begin + offset, p.end + offset});
+    }
+    total += chunk.contacts.size();
   }
-  append(to.point_W, from.point_W);
-  append(to.normal_W, from.normal_W);
-  append(to.gap, from.gap);
-  append(to.anchor_A, from.anchor_A);
-  append(to.anchor_B, from.anchor_B);
-  append(to.area, from.area);
-  append(to.feature, from.feature);
+  out.resize(total);
+  parallel_for(chunks.size(), 8,
+               [&](std::size_t c) { place(chunks[c].contacts, chunks[c].begin, out); });
 }
 
 }  // namespace
@@ -130,9 +143,8 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
 
   SearchStatistics statistics;
   statistics.candidate_pairs = static_cast<std::uint32_t>(pairs);
-  out.clear();
+  join(std::span(storage.chunks).first(count), out);
   for (std::size_t c = 0; c < count; ++c) {
-    append(out, storage.chunks[c].contacts);
     for (std::size_t h = 0; h < statistics.tests_per_level.size(); ++h) {
       statistics.tests_per_level[h] += storage.chunks[c].tests[h];
       statistics.tests += storage.chunks[c].tests[h];

@@ -43,20 +43,25 @@ void append_shape_contacts(const BodyState& bodies, const BodyPair& pair,
   const Mat3 R_AB = X_BA.q.toRotationMatrix().transpose();
   const std::vector<Vec3>& centers_a = tree_a.pyramid->level(level).center;
   const std::vector<Vec3>& centers_b = tree_b.pyramid->level(level).center;
-  const auto begin = static_cast<std::uint32_t>(out.size());
-  out.pairs.push_back({a, b, begin, begin});
+  auto i = out.size();
+  out.resize(i + scratch.overlaps.size());
+  out.pairs.push_back(
+      {a, b, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(out.size())});
   for (const SphereOverlap& overlap : scratch.overlaps) {
     const Vec3& c_B = centers_b[overlap.b];
     const Vec3 between = overlap.c_A - c_B;
     const bool coincident = overlap.distance <= 1e-12 * (r_A + r_B);
     const Vec3 n_B = coincident ? Vec3(R_WB.transpose() * fallback_normal(bodies, pair))
                                 : Vec3(between / overlap.distance);
+    out.point_W[i] = X_WB.p + R_WB * (c_B + (r_B / (r_A + r_B)) * between);
+    out.normal_W[i] = R_WB * n_B;
     // Without coincidence between . n is the distance; with it, the little that is left.
-    const double gap = (coincident ? between.dot(n_B) : overlap.distance) - (r_A + r_B);
-    out.push(X_WB.p + R_WB * (c_B + (r_B / (r_A + r_B)) * between), R_WB * n_B, gap,
-             centers_a[overlap.a] - r_A * (R_AB * n_B) - bodies.p_MB[a],
-             c_B + r_B * n_B - bodies.p_MB[b], 1.0,
-             static_cast<model::FeatureKey>(overlap.a) << 32U | overlap.b);
+    out.gap[i] = (coincident ? between.dot(n_B) : overlap.distance) - (r_A + r_B);
+    out.anchor_A[i] = centers_a[overlap.a] - r_A * (R_AB * n_B) - bodies.p_MB[a];
+    out.anchor_B[i] = c_B + r_B * n_B - bodies.p_MB[b];
+    out.area[i] = 1.0;
+    out.feature[i] = static_cast<model::FeatureKey>(overlap.a) << 32U | overlap.b;
+    ++i;
   }
 }
 

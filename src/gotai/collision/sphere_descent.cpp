@@ -10,11 +10,11 @@ namespace gotai::collision {
 
 namespace {
 
-using Entry = DescentScratch::Entry;
 using Group = DescentScratch::Group;
 using Frontier = DescentScratch::Frontier;
-using Float4 = float __attribute__((vector_size(16)));
+using Float4 = DescentScratch::Float4;
 using Int4 = std::int32_t __attribute__((vector_size(16)));
+using Long2 = std::int64_t __attribute__((vector_size(16)));
 
 // Bound on the rounding of the single-precision differences over all levels, as a fraction of the
 // largest lengths involved (each level rounds 3 components twice; 9 levels stay below 40 ulp).
@@ -34,30 +34,43 @@ Vec3 octant_sign(std::uint32_t octant) {
           (octant & 4U) != 0 ? 1.0 : -1.0};
 }
 
-/// What is the same for all pairs of one level.
+Float4 to_float4(const Vec3& v) {
+  return Float4{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
+                0.0F};
+}
+
+/// What is the same for all pairs of one level. Offsets of the children of a and of b in their
+/// parents, in b's mesh frame [m].
 struct LevelConstants {
-  std::array<std::array<float, 3>, 8> offset_a;  // a's child in its parent, b's mesh frame [m]
-  float half_b;                                  // half edge of b's child: its offset per axis [m]
-  float limit;                                   // largest squared distance that passes [m^2]
+  std::array<DescentScratch::Difference, 8> offset_a;
+  std::array<DescentScratch::Difference, 8> offset_b;
+  Float4 half_b;  // the size of offset_b in every component [m]
+  Float4 limit;   // largest squared distance that passes [m^2], in every component
 };
 
-/// Octants o of b whose centre is within the limit: d = (x, y, z) - offset(o), |d|^2 <= limit.
-std::uint32_t octants_within(float x, float y, float z, float half, float limit) {
-  const Float4 dx = Float4{x, x, x, x} + Float4{half, -half, half, -half};
-  const Float4 dy = Float4{y, y, y, y} + Float4{half, half, -half, -half};
-  const Float4 xy = dx * dx + dy * dy;
-  const float low = limit - (z + half) * (z + half);
-  const float high = limit - (z - half) * (z - half);
-  Int4 hit = (xy <= Float4{low, low, low, low}) & Int4{1, 2, 4, 8};
-  hit |= (xy <= Float4{high, high, high, high}) & Int4{16, 32, 64, 128};
-  return static_cast<std::uint32_t>(hit[0] | hit[1] | hit[2] | hit[3]);
+/// Octants o of b with |d - offset_b(o)|^2 <= limit, one bit each.
+std::uint32_t octants_within(Float4 d, const LevelConstants& level) {
+  const Float4 above = (d + level.half_b) * (d + level.half_b);  // lower octants
+  const Float4 below = (d - level.half_b) * (d - level.half_b);  // upper octants
+  const Float4 x = __builtin_shufflevector(above, below, 0, 4, 0, 4);
+  const Float4 y = __builtin_shufflevector(above, below, 1, 1, 5, 5);
+  const Float4 xy = x + y;
+  const Float4 lower = level.limit - __builtin_shufflevector(above, above, 2, 2, 2, 2);
+  const Float4 upper = level.limit - __builtin_shufflevector(below, below, 2, 2, 2, 2);
+  const Int4 hit = ((xy <= lower) & Int4{1, 2, 4, 8}) | ((xy <= upper) & Int4{16, 32, 64, 128});
+  const Long2 halves = reinterpret_cast<Long2>(hit);
+  const std::int64_t both = halves[0] | halves[1];
+  return static_cast<std::uint32_t>(both | (both >> 32));
 }
 
 void make_room(Frontier& frontier, std::size_t groups, std::size_t entries) {
   const std::size_t g = frontier.group_count + groups;
   const std::size_t e = frontier.entry_count + entries;
   if (frontier.groups.size() < g) frontier.groups.resize(2 * g);
-  if (frontier.entries.size() < e) frontier.entries.resize(2 * e);
+  if (frontier.b.size() < e) {
+    frontier.difference.resize(2 * e);
+    frontier.b.resize(2 * e);
+  }
 }
 
 /// Replaces every pair by its children and keeps those within the limit. Groups stay sorted by a,
@@ -71,38 +84,30 @@ std::uint64_t expand(const std::vector<SphereTree::Node>& nodes_a,
   for (std::uint32_t g = 0; g < current.group_count; ++g) {
     const Group group = current.groups[g];
     const SphereTree::Node node_a = nodes_a[group.a];
-    const Entry* const begin = current.entries.data() + group.begin;
-    const Entry* const end = current.entries.data() + group.end;
-    make_room(next, 8, 64 * static_cast<std::size_t>(end - begin));
+    make_room(next, 8, 64 * static_cast<std::size_t>(group.end - group.begin));
     std::uint64_t children_b = 0;
-    for (const Entry* e = begin; e != end; ++e) children_b += kBitCount[nodes_b[e->b].octants];
+    for (std::uint32_t e = group.begin; e < group.end; ++e) {
+      children_b += kBitCount[nodes_b[current.b[e]].octants];
+    }
     tests += kBitCount[node_a.octants] * children_b;
 
     std::uint32_t child_a = node_a.first_child;
     for (std::uint32_t rest = node_a.octants; rest != 0; rest &= rest - 1, ++child_a) {
-      const std::array<float, 3>& offset =
-          level.offset_a[static_cast<std::size_t>(std::countr_zero(rest))];
+      const Float4 offset = level.offset_a[static_cast<std::size_t>(std::countr_zero(rest))].d;
       const std::uint32_t first = next.entry_count;
-      Entry* out = next.entries.data() + first;
-      for (const Entry* e = begin; e != end; ++e) {
-        const SphereTree::Node node_b = nodes_b[e->b];
-        const float x = e->x + offset[0];
-        const float y = e->y + offset[1];
-        const float z = e->z + offset[2];
-        std::uint32_t hit = octants_within(x, y, z, level.half_b, level.limit) & node_b.octants;
-        for (; hit != 0; hit &= hit - 1) {
+      std::uint32_t out = first;
+      for (std::uint32_t e = group.begin; e < group.end; ++e) {
+        const SphereTree::Node node_b = nodes_b[current.b[e]];
+        const Float4 d = current.difference[e].d + offset;
+        std::uint32_t hit = octants_within(d, level) & node_b.octants;
+        for (; hit != 0; hit &= hit - 1, ++out) {
           const auto octant = static_cast<std::uint32_t>(std::countr_zero(hit));
-          out->x = (octant & 1U) != 0 ? x - level.half_b : x + level.half_b;
-          out->y = (octant & 2U) != 0 ? y - level.half_b : y + level.half_b;
-          out->z = (octant & 4U) != 0 ? z - level.half_b : z + level.half_b;
-          out->b = node_b.first_child + kBitCount[node_b.octants & ((1U << octant) - 1)];
-          ++out;
+          next.difference[out].d = d - level.offset_b[octant].d;
+          next.b[out] = node_b.first_child + kBitCount[node_b.octants & ~(~0U << octant)];
         }
       }
-      next.entry_count = static_cast<std::uint32_t>(out - next.entries.data());
-      if (next.entry_count != first) {
-        next.groups[next.group_count++] = {child_a, first, next.entry_count};
-      }
+      next.entry_count = out;
+      if (out != first) next.groups[next.group_count++] = {child_a, first, out};
     }
   }
   return tests;
@@ -128,22 +133,21 @@ void descend(const SphereTree& a, const SphereTree& b, const Pose& X_BA, int lev
   if (difference.norm() > reach(1) + slack) return;
   make_room(scratch.current, 1, 1);
   scratch.current.groups[0] = {0, 0, 1};
-  scratch.current.entries[0] = {static_cast<float>(difference.x()),
-                                static_cast<float>(difference.y()),
-                                static_cast<float>(difference.z()), 0};
+  scratch.current.difference[0].d = to_float4(difference);
+  scratch.current.b[0] = 0;
   scratch.current.group_count = 1;
   scratch.current.entry_count = 1;
 
   for (int h = 2; h <= level; ++h) {
     LevelConstants constants;
     const double half_a = 0.5 * pyramid_a.grid.voxel_edge(h);
+    const double half_b = 0.5 * pyramid_b.grid.voxel_edge(h);
     for (std::uint32_t octant = 0; octant < 8; ++octant) {
-      const Vec3 offset = R_BA * (half_a * octant_sign(octant));
-      constants.offset_a[octant] = {static_cast<float>(offset.x()), static_cast<float>(offset.y()),
-                                    static_cast<float>(offset.z())};
+      constants.offset_a[octant].d = to_float4(R_BA * (half_a * octant_sign(octant)));
+      constants.offset_b[octant].d = to_float4(half_b * octant_sign(octant));
     }
-    constants.half_b = static_cast<float>(0.5 * pyramid_b.grid.voxel_edge(h));
-    constants.limit = static_cast<float>((reach(h) + slack) * (reach(h) + slack));
+    constants.half_b = Float4{} + static_cast<float>(half_b);
+    constants.limit = Float4{} + static_cast<float>((reach(h) + slack) * (reach(h) + slack));
     const auto parent = static_cast<std::size_t>(h) - 2;
     tests[parent + 1] +=
         expand(a.levels[parent], b.levels[parent], constants, scratch.current, scratch.next);
@@ -158,7 +162,7 @@ void descend(const SphereTree& a, const SphereTree& b, const Pose& X_BA, int lev
     const Group group = scratch.current.groups[g];
     const Vec3 c_A = R_BA * centers_a[group.a] + X_BA.p;
     for (std::uint32_t i = group.begin; i < group.end; ++i) {
-      const std::uint32_t voxel_b = scratch.current.entries[i].b;
+      const std::uint32_t voxel_b = scratch.current.b[i];
       const double distance = (c_A - centers_b[voxel_b]).norm();
       if (distance - touching <= margin) out.push_back({group.a, voxel_b, c_A, distance});
     }

@@ -30,10 +30,10 @@ struct SphereOverlap {
 /// Pairs of spheres that the descent holds between two levels. Reused; not state.
 class DescentScratch {
  public:
-  /// A pair of voxels: b's index, and the difference of the centres c_A - c_B [m], b's mesh frame.
-  struct Entry {
-    float x, y, z;
-    std::uint32_t b;
+  using Float4 = float __attribute__((vector_size(16)));
+  /// Difference of two centres c_A - c_B [m], b's mesh frame: x, y, z, 0.
+  struct Difference {
+    Float4 d;
   };
   /// All pairs of one voxel of a: entries [begin, end).
   struct Group {
@@ -41,7 +41,9 @@ class DescentScratch {
   };
   struct Frontier {
     std::vector<Group> groups;  // the first group_count are in use
-    std::vector<Entry> entries;
+    // One entry per pair of voxels; the first entry_count are in use.
+    std::vector<Difference> difference;
+    std::vector<std::uint32_t> b;  // b's voxel
     std::uint32_t group_count = 0;
     std::uint32_t entry_count = 0;
   };
@@ -69,7 +71,10 @@ struct DescentTrace {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
 
-    friend auto operator<=>(const VoxelPair&, const VoxelPair&) = default;
+    friend bool operator==(const VoxelPair&, const VoxelPair&) = default;
+    friend bool operator<(const VoxelPair& p, const VoxelPair& q) {
+      return p.a != q.a ? p.a < q.a : p.b < q.b;
+    }
   };
   /// colliding[h - 1]: at level h, sorted by (a, b). Ends with level k, or with the first level at
   /// which nothing overlaps.

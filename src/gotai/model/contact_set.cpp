@@ -18,6 +18,16 @@ void ContactSet::clear() {
   feature.clear();
 }
 
+void ContactSet::resize(std::size_t count) {
+  point_W.resize(count);
+  normal_W.resize(count);
+  gap.resize(count);
+  anchor_A.resize(count);
+  anchor_B.resize(count);
+  area.resize(count);
+  feature.resize(count);
+}
+
 void ContactSet::push(const Vec3& point, const Vec3& normal, double gap_m, const Vec3& a,
                       const Vec3& b, double area_m2, FeatureKey key) {
   point_W.push_back(point);

@@ -40,6 +40,8 @@ struct ContactSet {
   std::size_t size() const { return gap.size(); }
   /// Empties it; storage is kept.
   void clear();
+  /// Changes the number of contacts (not the pairs); whoever asks for more writes the new ones.
+  void resize(std::size_t count);
   /// Appends one contact to the last pair.
   void push(const Vec3& point, const Vec3& normal, double gap_m, const Vec3& a, const Vec3& b,
             double area_m2, FeatureKey key);
