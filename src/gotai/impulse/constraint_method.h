@@ -2,10 +2,8 @@
 /// The constraint-based method, the thesis's choice [Makino 2007, sections 2.4-2.7, 4.3].
 #pragma once
 
-#include <vector>
-
 #include "gotai/impulse/assembly.h"
-#include "gotai/impulse/cone_problem.h"
+#include "gotai/impulse/island_solver.h"
 #include "gotai/impulse/method.h"
 
 namespace gotai::impulse {
@@ -31,28 +29,14 @@ class ConstraintMethod : public ImpulseMethod {
              model::Update& update) override;
   void finish(const model::BodyState& bodies, model::Update& update,
               model::ContactMemory& memory) override;
-  model::SolveReport report() const override { return report_; }
+  model::SolveReport report() const override { return islands_.report(); }
 
  private:
-  /// Storage for one island.
-  struct Work {
-    ConeProblem problem;
-    std::vector<Mat3> frame;  // contact frames, W
-    std::vector<Vec3> guess;  // contact frames [N s]
-    ConeSolution solution;
-  };
-
-  void solve_island(const model::BodyState& bodies, const Island& island,
-                    const std::vector<double>& gap, Work& work) const;
-
   model::Settings settings_;
+  IslandSolver islands_;
   const model::ContactSet* contacts_ = nullptr;  // of the step
   ContactTargets targets_;
-  std::vector<Vec3> warm_impulse_;  // per contact, of the last step [N s], W
-  std::vector<Island> islands_;
-  std::vector<Work> work_;  // per island
   double dt_ = 0.0;
-  model::SolveReport report_;
 };
 
 }  // namespace gotai::impulse

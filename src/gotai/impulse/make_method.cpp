@@ -1,18 +1,58 @@
 #include "gotai/core/error.h"
+#include "gotai/impulse/apparent_method.h"
 #include "gotai/impulse/constraint_method.h"
+#include "gotai/impulse/impulse_method.h"
 #include "gotai/impulse/method.h"
+#include "gotai/impulse/penalty_method.h"
+#include "gotai/impulse/sem_method.h"
+#include "gotai/impulse/substepped.h"
+#include "gotai/impulse/vector_field_method.h"
 
 namespace gotai::impulse {
+namespace {
+
+// The constraint method in the three ways to treat contacts.
+std::unique_ptr<ImpulseMethod> make_constraint_method(const model::Settings& settings) {
+  switch (settings.impulse.contacts) {
+    case model::ContactTreatment::all:
+      return std::make_unique<ConstraintMethod>(settings);
+    case model::ContactTreatment::apparent:
+      return std::make_unique<ApparentMethod>(settings);
+    case model::ContactTreatment::reduced:
+      if (settings.impulse.solver == model::SolverName::exact) {
+        return std::make_unique<ConstraintMethod>(settings);
+      }
+      return std::make_unique<SubsteppedConstraint>(settings);
+  }
+  return nullptr;
+}
+
+}  // namespace
 
 std::unique_ptr<ImpulseMethod> make_method(const model::Settings& settings) {
+  using model::ImpulseMethodName;
   const model::ImpulseSettings& impulse = settings.impulse;
-  if (impulse.contacts != model::ContactTreatment::all) {
-    throw InvalidArgument("impulse.contacts", to_string(impulse.contacts), "must be \"all\"");
+  if (impulse.method != ImpulseMethodName::constraint &&
+      impulse.contacts == model::ContactTreatment::apparent) {
+    throw InvalidArgument("impulse.contacts", to_string(impulse.contacts),
+                          "is chapter 5's simplification of the constraint method: use it with "
+                          "impulse.method = \"constraint\"");
   }
-  if (impulse.method != model::ImpulseMethodName::constraint) {
-    throw InvalidArgument("impulse.method", to_string(impulse.method), "must be \"constraint\"");
+  switch (impulse.method) {
+    case ImpulseMethodName::constraint:
+      return make_constraint_method(settings);
+    case ImpulseMethodName::penalty:
+      return std::make_unique<PenaltyMethod>(settings);
+    case ImpulseMethodName::impulse:
+      return std::make_unique<SuperposedImpulses>(settings, false);
+    case ImpulseMethodName::impulse_averaged:
+      return std::make_unique<SuperposedImpulses>(settings, true);
+    case ImpulseMethodName::sem:
+      return std::make_unique<SemMethod>(settings);
+    case ImpulseMethodName::vector_field:
+      return std::make_unique<VectorFieldMethod>(settings);
   }
-  return std::make_unique<ConstraintMethod>(settings);
+  throw InvalidArgument("impulse.method", to_string(impulse.method), "is not a method");
 }
 
 }  // namespace gotai::impulse

@@ -1,0 +1,59 @@
+/// @file
+/// The constraint method on apparent contact points [Makino 2007, chapter 5].
+#pragma once
+
+#include <vector>
+
+#include "gotai/impulse/apparent_contact.h"
+#include "gotai/impulse/assembly.h"
+#include "gotai/impulse/cone_problem.h"
+#include "gotai/impulse/islands.h"
+#include "gotai/impulse/method.h"
+#include "gotai/impulse/patch_friction.h"
+
+namespace gotai::impulse {
+
+/// Collapses the contacts of every touching pair into one row, solves the small complementarity
+/// problem over the pairs, and spreads the impulses back over the contacts, with friction (5.18,
+/// 5.19). A row is the weighted sum of the contacts' rows, w'J / |sum w n|: its matrix w'A w /
+/// |.|^2 is what the spread impulses really do, so that a pair never gains energy, whatever the
+/// normals (erratum 39).
+///
+/// Reads every contact that touches; a pair without an approaching one is skipped.
+/// Guarantees: one unknown per pair; no energy gain of a pair; friction on the original contacts
+/// (a body spinning about the normal slows down, Fig. 5-5), never reversing the sliding; sticking.
+/// Does not: stop every contact of a pair from approaching in the same step, nor balance moments
+/// between pairs: stacked bodies tilt (erratum 42); bodies on the ground rock before they rest.
+class ApparentMethod final : public ImpulseMethod {
+ public:
+  explicit ApparentMethod(const model::Settings& settings);
+
+  model::StepPlan plan(const model::BodyState& bodies, double dt) const override;
+  void prepare(const model::BodyState& bodies, const model::ContactSet& contacts,
+               const model::MaterialTable& materials, const model::StepPlan& plan,
+               const model::ContactMemory& memory) override;
+  void solve(const model::BodyState& bodies, const std::vector<double>& gap,
+             model::Update& update) override;
+  void finish(const model::BodyState& bodies, model::Update& update,
+              model::ContactMemory& memory) override;
+  model::SolveReport report() const override { return report_; }
+
+ private:
+  void find_weights(const model::BodyState& bodies, const std::vector<double>& gap);
+  void assemble_pairs(const model::BodyState& bodies, const Island& island,
+                      ConeProblem& problem) const;
+
+  model::Settings settings_;
+  const model::ContactSet* contacts_ = nullptr;  // of the step
+  ContactTargets targets_;
+  double dt_ = 0.0;
+  std::vector<Island> islands_;
+  std::vector<double> v_star_;             // per contact, normal velocity with gravity [m/s]
+  std::vector<double> bias_;               // per contact, row_bias() [m/s]
+  std::vector<ApparentContact> apparent_;  // per pair
+  std::vector<double> normal_impulse_;     // per contact [N s]
+  WorkingVelocities velocities_;
+  model::SolveReport report_;
+};
+
+}  // namespace gotai::impulse

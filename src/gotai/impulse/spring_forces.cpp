@@ -1,0 +1,62 @@
+#include "gotai/impulse/spring_forces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace gotai::impulse {
+
+double damping_ratio(double restitution) {
+  if (restitution <= 0.0) return 1.0;
+  const double decay = -std::log(restitution);
+  return decay / std::hypot(std::numbers::pi, decay);
+}
+
+double reduced_mass(const model::BodyState& bodies, const model::ContactPair& pair) {
+  return 1.0 / (bodies.inverse_mass[pair.body_a] + bodies.inverse_mass[pair.body_b]);
+}
+
+double largest_leverage(const model::BodyState& bodies) {
+  double largest = 1.0;
+  for (model::BodyIndex i = 0; i < bodies.size(); ++i) {
+    if (!bodies.is_dynamic(i)) continue;
+    const double arm = bodies.bounding_radius[i];
+    const double smallest_moment = bodies.principal_moments[i].minCoeff();
+    largest = std::max(largest, 1.0 + arm * arm / (bodies.inverse_mass[i] * smallest_moment));
+  }
+  return largest;
+}
+
+std::uint32_t add_spring_impulses(const model::BodyState& bodies, const model::ContactSet& contacts,
+                                  const model::ContactPair& pair, const PairSpring& spring,
+                                  const std::vector<double>& gap, double step,
+                                  const WorkingVelocities& before, WorkingVelocities& velocities,
+                                  std::vector<double>& normal_impulse,
+                                  std::vector<Vec3>& contact_impulse) {
+  std::uint32_t active = 0;
+  for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
+    normal_impulse[i] = 0.0;
+    if (gap[i] < spring.rest_gap) ++active;
+  }
+  if (active == 0) return 0;
+
+  const double mass = reduced_mass(bodies, pair) / active;
+  const double stiffness = mass * spring.frequency * spring.frequency;
+  const double damping = 2.0 * spring.damping_ratio * mass * spring.frequency;
+  for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
+    if (gap[i] >= spring.rest_gap) continue;
+    const Vec3& n = contacts.normal_W[i];
+    const double v = n.dot(before.relative(bodies, pair, contacts.point_W[i]));
+    double force = stiffness * (spring.rest_gap - gap[i]) - damping * v;
+    if (!spring.tension) force = std::max(0.0, force);
+    normal_impulse[i] = force * step;
+    const Vec3 impulse = normal_impulse[i] * n;
+    velocities.add_impulse(bodies, pair, contacts.point_W[i], impulse);
+    contact_impulse[i] += impulse;
+  }
+  add_patch_friction(bodies, contacts, pair, spring.friction, normal_impulse, velocities,
+                     contact_impulse);
+  return active;
+}
+
+}  // namespace gotai::impulse
