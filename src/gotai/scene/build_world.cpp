@@ -7,6 +7,7 @@
 #include "gotai/core/error.h"
 #include "gotai/scene/pose_file.h"
 #include "gotai/scene/pour.h"
+#include "gotai/voxel/shape_cache.h"
 
 namespace gotai::scene {
 namespace {
@@ -110,7 +111,10 @@ voxel::Shape prepare_shape(const ShapeDescription& description, const BuildOptio
       if (description.size > 0.0) scale_to(mesh, description.size);
     }
     if (options.progress) options.progress(fmt::format("preparing shape {}", description.name));
-    return voxel::make_shape(description.name, std::move(mesh), {description.prepared_level});
+    return voxel::make_shape_cached(description.name, std::move(mesh),
+                                    {.prepared_level = description.prepared_level},
+                                    options.cache_folder)
+        .shape;
   });
 }
 
