@@ -24,17 +24,16 @@ std::size_t octave(double diameter) {
   return static_cast<std::size_t>(std::clamp(std::ilogb(diameter) + kOctaves / 2, 0, kOctaves - 1));
 }
 
-/// Consecutive cells along x around one, wrapped: one or two runs of [first, last].
+/// Consecutive cells along x, wrapped: one or two runs of [first, last].
 struct Runs {
   std::array<std::array<std::uint32_t, 2>, 2> run;
   std::size_t count;
 };
 
-/// x - 1 .. x + 1.
-Runs three_cells(std::uint32_t x, std::uint32_t mask) {
-  if (x == 0) return {{{{mask, mask}, {0, 1}}}, 2};
-  if (x == mask) return {{{{mask - 1, mask}, {0, 0}}}, 2};
-  return {{{{x - 1, x + 1}}}, 1};
+Runs consecutive_cells(std::uint32_t first, std::uint32_t count, std::uint32_t mask) {
+  const std::uint32_t last = first + count - 1;
+  if (last <= mask) return {{{{first, last}}}, 1};
+  return {{{{first, mask}, {0, last - mask - 1}}}, 2};
 }
 
 /// Can a sphere reach a face of an open box? Conservative: the walls are taken as endless.
@@ -47,14 +46,14 @@ bool reaches_container(const Vec3& center, double reach, const Vec3& half_extent
 
 }  // namespace
 
-BroadPhase::Cell BroadPhase::Grid::cell_of(const Entry& e) const {
+BroadPhase::Cell BroadPhase::Grid::cell_of(double x, double y, double z) const {
   // Far beyond any world; keeps the conversion to an integer defined.
   static constexpr double kLimit = 1e15;
-  const auto wrap = [this](double x, std::uint32_t axis_mask) {
-    const double i = std::clamp(std::floor(x / cell), -kLimit, kLimit);
+  const auto wrap = [this](double coordinate, std::uint32_t axis_mask) {
+    const double i = std::clamp(std::floor(coordinate / cell), -kLimit, kLimit);
     return static_cast<std::uint32_t>(static_cast<std::int64_t>(i) & axis_mask);
   };
-  return {wrap(e.x, mask[0]), wrap(e.y, mask[1]), wrap(e.z, mask[2])};
+  return {wrap(x, mask[0]), wrap(y, mask[1]), wrap(z, mask[2])};
 }
 
 void BroadPhase::find_pairs(const model::BodyState& bodies, std::span<const double> radius,
@@ -147,7 +146,7 @@ void BroadPhase::fill_grid(Grid& grid) {
   grid.begin.assign(cells + 1, 0);
   cell_.resize(grid.entries.size());
   for (std::size_t i = 0; i < grid.entries.size(); ++i) {
-    cell_[i] = grid.index(grid.cell_of(grid.entries[i]));
+    cell_[i] = grid.index(grid.cell_of(grid.entries[i].x, grid.entries[i].y, grid.entries[i].z));
     ++grid.begin[cell_[i]];
   }
   std::uint32_t sum = 0;
@@ -199,7 +198,7 @@ void BroadPhase::pair_within(const Grid& grid, double margin) {
         }
         const std::uint32_t next = grid.index({(x + 1) & grid.mask[0], y, z});
         against(begin, end, next, next);
-        const Runs runs = three_cells(x, grid.mask[0]);
+        const Runs runs = consecutive_cells((x - 1) & grid.mask[0], 3, grid.mask[0]);
         for (const auto& [dy, dz] : kRows) {
           const std::uint32_t row =
               grid.index({0, (y + dy) & grid.mask[1], (z + dz) & grid.mask[2]});
@@ -214,12 +213,18 @@ void BroadPhase::pair_within(const Grid& grid, double margin) {
 
 void BroadPhase::pair_across(const Grid& fine, const Grid& coarse, double margin) {
   for (const Entry& e : fine.entries) {
-    const Cell c = coarse.cell_of(e);
-    const Runs runs = three_cells(c[0], coarse.mask[0]);
-    for (std::uint32_t dz = 0; dz < 3; ++dz) {
-      for (std::uint32_t dy = 0; dy < 3; ++dy) {
+    // Centres of the coarse bodies that e can touch; at most three cells along an axis.
+    const double reach = 0.5 * coarse.cell + e.r + 0.5 * margin;
+    const Cell low = coarse.cell_of(e.x - reach, e.y - reach, e.z - reach);
+    const Cell high = coarse.cell_of(e.x + reach, e.y + reach, e.z + reach);
+    const Cell count{((high[0] - low[0]) & coarse.mask[0]) + 1,
+                     ((high[1] - low[1]) & coarse.mask[1]) + 1,
+                     ((high[2] - low[2]) & coarse.mask[2]) + 1};
+    const Runs runs = consecutive_cells(low[0], count[0], coarse.mask[0]);
+    for (std::uint32_t dz = 0; dz < count[2]; ++dz) {
+      for (std::uint32_t dy = 0; dy < count[1]; ++dy) {
         const std::uint32_t row =
-            coarse.index({0, (c[1] + dy - 1) & coarse.mask[1], (c[2] + dz - 1) & coarse.mask[2]});
+            coarse.index({0, (low[1] + dy) & coarse.mask[1], (low[2] + dz) & coarse.mask[2]});
         for (std::size_t r = 0; r < runs.count; ++r) {
           const std::uint32_t end = coarse.begin[row + runs.run[r][1] + 1];
           for (std::uint32_t j = coarse.begin[row + runs.run[r][0]]; j < end; ++j) {

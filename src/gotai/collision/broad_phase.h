@@ -57,7 +57,7 @@ class BroadPhase {
     std::vector<Entry> entries;             // sorted by cell, within a cell by body
     std::vector<std::uint32_t> begin;       // per cell: its first entry; one more at the end
 
-    Cell cell_of(const Entry& e) const;
+    Cell cell_of(double x, double y, double z) const;  // wrapped
     std::uint32_t index(const Cell& c) const {
       return c[0] * stride[0] + c[1] * stride[1] + c[2] * stride[2];
     }
