@@ -1,0 +1,129 @@
+#include "thesis/scenario.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "gotai/core/error.h"
+
+namespace gotai::experiments {
+
+Setup setup_of(const Json& point, Setup s) {
+  s.method = point.value("method", s.method);
+  s.model = point.value("model", s.model);
+  s.level = point.value("level", s.level);
+  s.dt = point.value("dt", s.dt);
+  if (point.contains("integrator"))
+    s.explicit_euler = point["integrator"].get<std::string>() == "explicit-euler";
+  return s;
+}
+
+model::Settings settings_of(const Setup& setup) {
+  model::Settings settings;
+  settings.gravity = Vec3(0.0, 0.0, -kGravity);
+  settings.collision.model = model::parse_collision_model(setup.model);
+  settings.collision.level = setup.level;
+  settings.impulse.contacts = model::ContactTreatment::all;
+  if (setup.method == "C") {
+    settings.impulse.method = model::ImpulseMethodName::constraint;
+    settings.impulse.solver = model::SolverName::exact;
+  } else if (setup.method == "A") {
+    settings.impulse.method = model::ImpulseMethodName::constraint;
+    settings.impulse.contacts = model::ContactTreatment::apparent;
+  } else if (setup.method == "I") {
+    settings.impulse.method = model::ImpulseMethodName::impulse_averaged;
+  } else if (setup.method == "S") {
+    settings.impulse.method = model::ImpulseMethodName::impulse;
+  } else {
+    throw InvalidArgument("method", setup.method, "must be C, A, I or S");
+  }
+  settings.time.step = setup.dt;
+  settings.time.integrator =
+      setup.explicit_euler ? model::Integrator::explicit_euler : model::Integrator::semi_implicit;
+  return settings;
+}
+
+World world_with_floor(const Setup& setup) {
+  World world(settings_of(setup));
+  model::Material material;
+  material.restitution = setup.restitution;
+  material.friction = setup.friction;
+  world.set_default_material(material);
+  world.add_plane({});
+  return world;
+}
+
+std::shared_ptr<const voxel::Shape> prepare(const geometry::GeneratorOptions& options, int level,
+                                            const std::string& /*model*/) {
+  voxel::ShapeOptions how;
+  how.prepared_level = level;
+  return std::make_shared<const voxel::Shape>(
+      voxel::make_shape(options.shape, geometry::generate(options), how));
+}
+
+BodyId add_unit_body(World& world, ShapeId shape, const Vec3& x_W, const Quat& q_WB,
+                     const Vec3& v_W, const Vec3& w_W) {
+  BodyDescription body;
+  body.shape = shape;
+  body.mass = 1.0;
+  body.com_position = x_W;
+  body.X_WM.q = q_WB;
+  body.velocity = v_W;
+  body.angular_velocity = w_W;
+  return world.add_body(body);
+}
+
+double bouncing_height(double z0, double z_touch, double e, double t) {
+  double drop = z0 - z_touch;
+  double speed = std::sqrt(2.0 * kGravity * drop);
+  double start = speed / kGravity;  // of the present arc, at touch
+  if (t < start) return z0 - 0.5 * kGravity * t * t;
+  for (;;) {
+    speed *= e;
+    const double duration = 2.0 * speed / kGravity;
+    if (duration < 1e-9) return z_touch;
+    if (t < start + duration) {
+      const double s = t - start;
+      return z_touch + speed * s - 0.5 * kGravity * s * s;
+    }
+    start += duration;
+  }
+}
+
+double rms(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return a.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+Totals::Totals(World& world) : lowest_energy_(world.energy().total()) {
+  world.add_observer([this](const World&, const model::StepReport& report) {
+    ++steps_;
+    collision_s += report.collision_s;
+    impulse_s += report.impulse_s;
+    integration_s += report.integration_s;
+    total_s += report.total_s();
+    tests += report.tests;
+    contacts_ += report.contacts;
+    contacts_max_ = std::max<std::uint64_t>(contacts_max_, report.contacts);
+    overlap_max_ = std::max(overlap_max_, report.max_overlap);
+    const double energy = report.energy.total();
+    energy_gain_ = std::max(energy_gain_, energy - lowest_energy_);
+    lowest_energy_ = std::min(lowest_energy_, energy);
+  });
+}
+
+void Totals::write(Json& record) const {
+  record["steps"] = steps_;
+  record["contacts_mean"] =
+      steps_ > 0 ? static_cast<double>(contacts_) / static_cast<double>(steps_) : 0.0;
+  record["contacts_max"] = contacts_max_;
+  record["overlap_max"] = overlap_max_;
+  record["energy_gain"] = energy_gain_;
+}
+
+std::string label_of(const Json& record) {
+  return record.value("method", "") + ", " + record.value("model", "");
+}
+
+}  // namespace gotai::experiments

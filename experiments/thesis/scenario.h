@@ -1,0 +1,78 @@
+/// @file
+/// What the thesis's experiments have in common: SI units, g = 9.8 m/s^2, floor z = 0, mass 1 kg.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiment.h"
+#include "gotai/geometry/generate.h"
+#include "gotai/voxel/shape.h"
+#include "gotai/world/world.h"
+
+namespace gotai::experiments {
+
+inline constexpr double kGravity = 9.8;  ///< [m/s^2]
+
+/// What a point of most sweeps says: method, collision model, level, step. Keys of the same names.
+struct Setup {
+  std::string method = "C";       ///< C constraint, A apparent, I averaged, S superposed impulses
+  std::string model = "spheres";  ///< or "surface"
+  int level = 5;
+  double dt = 0.01;  ///< [s]
+  double restitution = 0.5;
+  double friction = 0.0;
+  bool explicit_euler = false;
+};
+
+/// Fills a setup from the keys of a point that are there (method, model, level, dt, integrator).
+Setup setup_of(const Json& point, Setup defaults);
+
+/// Settings of a world for a setup.
+model::Settings settings_of(const Setup& setup);
+
+/// A world with one default material and a floor.
+World world_with_floor(const Setup& setup);
+
+/// A generated shape, prepared to a level with what the collision model needs.
+std::shared_ptr<const voxel::Shape> prepare(const geometry::GeneratorOptions& options, int level,
+                                            const std::string& model);
+
+/// Adds a 1 kg body by the position of its centre of mass.
+BodyId add_unit_body(World& world, ShapeId shape, const Vec3& x_W,
+                     const Quat& q_WB = Quat::Identity(), const Vec3& v_W = Vec3::Zero(),
+                     const Vec3& w_W = Vec3::Zero());
+
+/// Height of a ball that is dropped from z0 on a floor where it touches at z_touch, bouncing with
+/// e, at time t: the analytic solution of the free-fall experiments [m].
+double bouncing_height(double z0, double z_touch, double e, double t);
+
+/// Root mean square of the differences.
+double rms(const std::vector<double>& a, const std::vector<double>& b);
+
+/// Totals that every record reports: energy, overlap, contacts, steps (spec: "Common").
+struct Totals {
+  explicit Totals(World& world);  ///< watches the world from now on; must not outlive it
+  /// Writes steps, contacts_mean, contacts_max, overlap_max, energy_gain into a record.
+  void write(Json& record) const;
+
+  double collision_s = 0.0;  ///< summed wall-clock time by phase [s]
+  double impulse_s = 0.0;
+  double integration_s = 0.0;
+  double total_s = 0.0;
+  std::uint64_t tests = 0;
+
+ private:
+  std::uint64_t steps_ = 0;
+  std::uint64_t contacts_ = 0;
+  std::uint64_t contacts_max_ = 0;
+  double overlap_max_ = 0.0;
+  double lowest_energy_;
+  double energy_gain_ = 0.0;
+};
+
+/// "C", "surface" -> "C, surface": label of a line in plots.
+std::string label_of(const Json& record);
+
+}  // namespace gotai::experiments
