@@ -11,20 +11,20 @@
 namespace gotai::impulse {
 namespace {
 
-// The constraint method in the three ways to treat contacts.
+// The constraint method: apparent contacts, the sub-stepped solver for surface contacts unless
+// another is named, else all contacts at once.
 std::unique_ptr<ImpulseMethod> make_constraint_method(const model::Settings& settings) {
-  switch (settings.impulse.contacts) {
-    case model::ContactTreatment::all:
-      return std::make_unique<ConstraintMethod>(settings);
-    case model::ContactTreatment::apparent:
-      return std::make_unique<ApparentMethod>(settings);
-    case model::ContactTreatment::reduced:
-      if (settings.impulse.solver == model::SolverName::exact) {
-        return std::make_unique<ConstraintMethod>(settings);
-      }
-      return std::make_unique<SubsteppedConstraint>(settings);
-  }
-  return nullptr;
+  using model::ContactTreatment;
+  using model::SolverName;
+  const model::ImpulseSettings& impulse = settings.impulse;
+  if (impulse.contacts == ContactTreatment::apparent)
+    return std::make_unique<ApparentMethod>(settings);
+  const bool suits_substeps = impulse.contacts == ContactTreatment::reduced ||
+                              settings.collision.model == model::CollisionModel::surface;
+  if (impulse.solver == SolverName::substepped ||
+      (impulse.solver == SolverName::automatic && suits_substeps))
+    return std::make_unique<SubsteppedConstraint>(settings);
+  return std::make_unique<ConstraintMethod>(settings);
 }
 
 }  // namespace

@@ -12,6 +12,11 @@ namespace gotai::impulse {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+// A pair's velocities are at hand while its batch is visited, so its contacts are swept more than
+// once: nearly a block solve, for the price of the arithmetic alone.
+constexpr int kVisitsPerSweep = 2;
+constexpr int kVisitsPerRestitution = 8;
+
 using Tag = hn::CappedTag<float, kLanes>;
 using IndexTag = hn::RebindToSigned<Tag>;
 using V = hn::Vec<Tag>;
@@ -206,10 +211,12 @@ HWY_INLINE void sweep(SoftBody* bodies, const PairBatch* batches, std::size_t co
                       ContactRow* rows, float inverse_h) {
   const V inverse = hn::Set(Tag(), inverse_h);
   for_each_group(bodies, batches, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
-    for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
-      solve_friction(batch, l, rows[r], m);
-    for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
-      solve_normal<kBiased>(batch, l, rows[r], inverse, m);
+    for (int visit = 0; visit < kVisitsPerSweep; ++visit) {
+      for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
+        solve_friction(batch, l, rows[r], m);
+      for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
+        solve_normal<kBiased>(batch, l, rows[r], inverse, m);
+    }
     scatter_pair(batch, l, m, bodies);
   });
 }
@@ -238,8 +245,9 @@ void Restitution(SoftBody* bodies, const PairBatch* batches, std::size_t count, 
   const V slow = hn::Set(Tag(), -threshold);
   for_each_group(bodies, batches, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
     const V e = load(batch.restitution, l);
-    for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r) {
-      ContactRow& row = rows[r];
+    const std::uint32_t count_rows = batch.row_end - batch.row_begin;
+    for (std::uint32_t k = 0; k < kVisitsPerRestitution * count_rows; ++k) {
+      ContactRow& row = rows[batch.row_begin + k % count_rows];
       const V approach = load(row.approach, l);
       const V old = load(row.p_n, l);
       const auto bounces = hn::And(hn::And(hn::Lt(approach, slow), hn::Gt(e, zero())),

@@ -1,5 +1,6 @@
 #include "gotai/impulse/substepped.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -93,6 +94,7 @@ void SubsteppedConstraint::prepare(const model::BodyState& bodies,
   lay_out_batches(bodies, materials);
   fill_rows(bodies);
   load_warm_start(memory);
+  share_loads();
   report_ = {};
   report_.rows = static_cast<std::uint32_t>(slots_.size());
   report_.substeps = static_cast<std::uint32_t>(plan.substeps);
@@ -220,6 +222,54 @@ void SubsteppedConstraint::load_warm_start(const model::ContactMemory& memory) {
       set(row.p_1, l, entry.impulse_W.dot(t1));
       set(row.p_2, l, entry.impulse_W.dot(n.cross(t1)));
     }
+}
+
+void SubsteppedConstraint::share_loads() {
+  using Vec6 = Eigen::Matrix<double, 6, 1>;
+  using Mat6 = Eigen::Matrix<double, 6, 6>;
+  for (const model::ContactPair& pair : contacts_->pairs) {
+    if (pair.size() < 3) continue;
+    Vec3 center = Vec3::Zero();
+    double area = 0.0;
+    for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
+      center += contacts_->area[c] * contacts_->point_W[c];
+      area += contacts_->area[c];
+    }
+    center /= area;
+    double radius = 0.0;
+    for (std::uint32_t c = pair.begin; c < pair.end; ++c)
+      radius = std::max(radius, (contacts_->point_W[c] - center).norm());
+    if (!(radius > 0.0)) continue;
+
+    // Unit wrench of a contact about the patch's centre, moments in units of its radius.
+    const auto wrench = [&](std::uint32_t c) {
+      Vec6 unit;
+      unit << contacts_->normal_W[c],
+          (contacts_->point_W[c] - center).cross(contacts_->normal_W[c]) / radius;
+      return unit;
+    };
+    Mat6 gram = Mat6::Zero();
+    Vec6 total = Vec6::Zero();
+    for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
+      const Vec6 unit = wrench(c);
+      gram.noalias() += (contacts_->area[c] / area) * unit * unit.transpose();
+      total += static_cast<double>(rows_[slots_[c].row].p_n.value[slots_[c].lane]) * unit;
+    }
+    gram.diagonal().array() += 1e-6;
+    const Vec6 share = gram.ldlt().solve(total) / area;
+    // As far towards even as no contact has to pull: mixtures of equal wrench have equal wrench.
+    double mix = 1.0;
+    for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
+      const double even = contacts_->area[c] * wrench(c).dot(share);
+      const double now = rows_[slots_[c].row].p_n.value[slots_[c].lane];
+      if (even < 0.0) mix = std::min(mix, now / (now - even));
+    }
+    for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
+      float& p = rows_[slots_[c].row].p_n.value[slots_[c].lane];
+      const double even = contacts_->area[c] * wrench(c).dot(share);
+      p = static_cast<float>(std::max(0.0, p + mix * (even - p)));
+    }
+  }
 }
 
 void SubsteppedConstraint::read_velocities(const model::BodyState& bodies) {

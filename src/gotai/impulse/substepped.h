@@ -47,6 +47,9 @@ class SubsteppedConstraint final : public ImpulseMethod {
   void lay_out_batches(const model::BodyState& bodies, const model::MaterialTable& materials);
   void fill_rows(const model::BodyState& bodies);
   void load_warm_start(const model::ContactMemory& memory);
+  /// Moves the warm start of each pair towards the impulses of equal wrench that press evenly, by
+  /// area: redundant contacts share the load, as under a uniform tiny compliance (erratum 23).
+  void share_loads();
   void read_velocities(const model::BodyState& bodies);
   void write_changes(const model::BodyState& bodies, model::Update& update) const;
 

@@ -27,10 +27,11 @@ constexpr std::array<std::pair<ContactTreatment, std::string_view>, 3> kTreatmen
     {{ContactTreatment::all, "all"},
      {ContactTreatment::apparent, "apparent"},
      {ContactTreatment::reduced, "reduced"}}};
-constexpr std::array<std::pair<SolverName, std::string_view>, 3> kSolvers{
+constexpr std::array<std::pair<SolverName, std::string_view>, 4> kSolvers{
     {{SolverName::automatic, "auto"},
      {SolverName::exact, "exact"},
-     {SolverName::iterative, "iterative"}}};
+     {SolverName::iterative, "iterative"},
+     {SolverName::substepped, "substepped"}}};
 constexpr std::array<std::pair<Integrator, std::string_view>, 2> kIntegrators{
     {{Integrator::semi_implicit, "semi-implicit"}, {Integrator::explicit_euler, "explicit-euler"}}};
 

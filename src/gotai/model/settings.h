@@ -22,7 +22,9 @@ enum class ImpulseMethodName : std::uint8_t {
 /// Which contacts an impulse method reads: all that were found, chapter 5's one per pair, or few
 /// per patch.
 enum class ContactTreatment : std::uint8_t { all, apparent, reduced };
-enum class SolverName : std::uint8_t { automatic, exact, iterative };
+/// How the constraint method solves. Automatic: sub-stepped for surface contacts; for spheres exact
+/// or iterative by size.
+enum class SolverName : std::uint8_t { automatic, exact, iterative, substepped };
 enum class Integrator : std::uint8_t { semi_implicit, explicit_euler };
 
 struct CollisionSettings {
