@@ -8,6 +8,7 @@
 #include "gotai/collision/broad_phase.h"
 #include "gotai/collision/sphere_contacts.h"
 #include "gotai/collision/sphere_tree.h"
+#include "gotai/collision/surface_contacts.h"
 #include "gotai/core/error.h"
 #include "gotai/core/parallel.h"
 
@@ -36,6 +37,19 @@ void check_levels(const model::BodyState& bodies, Shapes shapes, int level) {
                             fmt::format("must be 1..{0}: shape '{1}' is prepared to level {0}; "
                                         "prepare it to level {2} or lower the level",
                                         shape.pyramid.max_level(), shape.name, level));
+    }
+  }
+}
+
+void check_surfaces(const model::BodyState& bodies, Shapes shapes) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies.geometry[i] != model::Geometry::shape) continue;
+    const voxel::Shape& shape = *shapes[bodies.shape[i]];
+    if (shape.surface.empty()) {
+      throw InvalidArgument("collision.model", "surface",
+                            fmt::format("shape '{}' is prepared without a surface model; prepare "
+                                        "it with a surface level, or use \"spheres\"",
+                                        shape.name));
     }
   }
 }
@@ -83,26 +97,33 @@ struct CollisionCache::Storage {
   std::vector<SphereTree> trees;
   std::vector<Chunk> chunks;
   tbb::enumerable_thread_specific<SphereScratch> scratch;
+  tbb::enumerable_thread_specific<SurfaceSearch> surface_scratch;
 
-  void refresh_trees(Shapes current);
-  void refresh_radii(const model::BodyState& bodies, int level);
+  void refresh_shapes(Shapes current, bool with_sphere_trees);
+  void refresh_radii(const model::BodyState& bodies, const model::CollisionSettings& settings);
 };
 
-void CollisionCache::Storage::refresh_trees(Shapes current) {
+void CollisionCache::Storage::refresh_shapes(Shapes current, bool with_sphere_trees) {
   shapes.resize(current.size());
   trees.resize(current.size());
   for (std::size_t s = 0; s < current.size(); ++s) {
-    if (shapes[s] == current[s]) continue;
-    trees[s] = make_sphere_tree(current[s]->pyramid);
+    if (shapes[s] != current[s]) trees[s] = {};
     shapes[s] = current[s];
+    if (with_sphere_trees && trees[s].pyramid == nullptr) {
+      trees[s] = make_sphere_tree(current[s]->pyramid);
+    }
   }
 }
 
-void CollisionCache::Storage::refresh_radii(const model::BodyState& bodies, int level) {
+void CollisionCache::Storage::refresh_radii(const model::BodyState& bodies,
+                                            const model::CollisionSettings& settings) {
   radius.assign(bodies.size(), 0.0);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (bodies.geometry[i] != model::Geometry::shape) continue;
-    radius[i] = shapes[bodies.shape[i]]->voxel_bounding_radius[static_cast<std::size_t>(level) - 1];
+    const voxel::Shape& shape = *shapes[bodies.shape[i]];
+    radius[i] = settings.model == model::CollisionModel::surface
+                    ? shape.bounding_radius
+                    : shape.voxel_bounding_radius[static_cast<std::size_t>(settings.level) - 1];
   }
 }
 
@@ -114,14 +135,15 @@ CollisionCache& CollisionCache::operator=(CollisionCache&&) noexcept = default;
 SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
                                const model::CollisionSettings& settings, double margin,
                                CollisionCache& cache, model::ContactSet& out) {
-  if (settings.model != model::CollisionModel::spheres) {
-    throw InvalidArgument("collision.model", model::to_string(settings.model),
-                          "must be \"spheres\"");
+  const bool surface = settings.model == model::CollisionModel::surface;
+  if (surface) {
+    check_surfaces(bodies, shapes);
+  } else {
+    check_levels(bodies, shapes, settings.level);
   }
-  check_levels(bodies, shapes, settings.level);
   CollisionCache::Storage& storage = cache.storage();
-  storage.refresh_trees(shapes);
-  storage.refresh_radii(bodies, settings.level);
+  storage.refresh_shapes(shapes, !surface);
+  storage.refresh_radii(bodies, settings);
   storage.broad_phase.find_pairs(bodies, storage.radius, margin, storage.candidates);
 
   // Pairs are cut into chunks by their number alone and joined in order: the result does not depend
@@ -132,10 +154,21 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
   if (storage.chunks.size() < count) storage.chunks.resize(count);
   parallel_for(count, 1, [&](std::size_t c) {
     Chunk& chunk = storage.chunks[c];
-    SphereScratch& scratch = storage.scratch.local();
     chunk.contacts.clear();
     chunk.tests.fill(0);
-    for (std::size_t p = c * size; p < std::min(pairs, (c + 1) * size); ++p) {
+    const std::size_t end = std::min(pairs, (c + 1) * size);
+    if (surface) {
+      SurfaceSearch& search = storage.surface_scratch.local();
+      search.tests = 0;
+      for (std::size_t p = c * size; p < end; ++p) {
+        append_surface_contacts(bodies, storage.candidates[p], shapes, margin, search,
+                                chunk.contacts);
+      }
+      chunk.tests[0] = search.tests;
+      return;
+    }
+    SphereScratch& scratch = storage.scratch.local();
+    for (std::size_t p = c * size; p < end; ++p) {
       append_sphere_contacts(bodies, storage.candidates[p], storage.trees, settings.level, margin,
                              scratch, chunk.contacts, chunk.tests);
     }

@@ -2,19 +2,14 @@
 
 #include <cmath>
 
+#include "gotai/collision/relative_pose.h"
+
 namespace gotai::collision {
 
 namespace {
 
 using model::BodyIndex;
 using model::BodyState;
-
-/// Pose of frame A in frame B from both poses in the world. The difference is taken first: far from
-/// the world's origin the other order would cancel.
-Pose relative_pose(const Pose& X_WB, const Pose& X_WA) {
-  const Quat q_BW = X_WB.q.conjugate();
-  return {q_BW * (X_WA.p - X_WB.p), q_BW * X_WA.q};
-}
 
 /// Normal for spheres whose centres coincide, W.
 Vec3 fallback_normal(const BodyState& bodies, const BodyPair& pair) {

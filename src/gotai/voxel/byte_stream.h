@@ -28,8 +28,9 @@ concept PlainBytes = !std::is_pointer_v<T> && std::is_trivially_destructible_v<T
 class ByteWriter {
  public:
   void bytes(const void* data, std::size_t size) {
-    const auto* begin = static_cast<const std::byte*>(data);
-    bytes_.insert(bytes_.end(), begin, begin + size);
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + size);
+    if (size > 0) std::memcpy(bytes_.data() + at, data, size);
   }
   template <PlainBytes T>
   void value(const T& v) {

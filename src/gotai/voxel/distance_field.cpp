@@ -92,18 +92,22 @@ void sample_bricks(const SignedDistance& surface, const Vec3& low, DistanceField
   const int n = field.bricks;
   const double cell = field.cell;
   const double brick_edge = kBrickCells * cell;
-  field.brick.assign(static_cast<std::size_t>(n * n * n), -1);
+  field.brick.assign(static_cast<std::size_t>(n * n * n), kNoBrickOutside);
   std::vector<std::int16_t> values(kBrickStride, 0);
   std::int32_t count = 0;
+  std::uint32_t hint = SignedDistance::kNoTriangle;
   for (int k = 0; k < n; ++k) {
     for (int j = 0; j < n; ++j) {
       for (int i = 0; i < n; ++i) {
         const Vec3 corner = low + brick_edge * Vec3(i, j, k);
+        std::int32_t& brick = field.brick[static_cast<std::size_t>((k * n + j) * n + i)];
         const ClosestPoint center = surface.query(corner + Vec3::Constant(0.5 * brick_edge),
-                                                  field.band + kHalfDiagonal * brick_edge);
-        if (!std::isfinite(center.distance)) continue;
+                                                  std::numeric_limits<double>::infinity(), hint);
+        hint = center.triangle;
+        if (center.distance < 0.0) brick = kNoBrickInside;
+        if (std::abs(center.distance) > field.band + kHalfDiagonal * brick_edge) continue;
         if (!sample_brick(surface, corner, field, center, values.data())) continue;
-        field.brick[static_cast<std::size_t>((k * n + j) * n + i)] = count++;
+        brick = count++;
         field.values.insert(field.values.end(), values.begin(), values.end());
       }
     }
@@ -174,6 +178,8 @@ DistanceField make_distance_field(const SignedDistance& surface, const Vec3& cen
   field.low = static_cast<float>(-0.5 * cell * field.cells());
   field.band = static_cast<float>(kBandCells * cell);
   field.trusted = static_cast<float>((kRangeCells - 2.0 * kHalfDiagonal) * cell);
+  field.nearest_coarse =
+      std::min(field.band, field.trusted - static_cast<float>(kHalfDiagonal * cell));
   field.scale = static_cast<float>(kRangeCells * cell / 32767.0);
   field.coarse_scale = static_cast<float>(2.0 * cell * field.cells() / 32767.0);
   const Vec3 low = center + Vec3::Constant(field.low);
@@ -192,7 +198,8 @@ FieldValue evaluate(const DistanceField& field, const Vec3& x) {
   const Eigen::Vector3i b = c / kBrickCells;
   const std::int32_t brick =
       field.brick[static_cast<std::size_t>((b.z() * field.bricks + b.y()) * field.bricks + b.x())];
-  FieldValue result{std::numeric_limits<double>::infinity(), Vec3::Zero(), false};
+  FieldValue result;
+  bool is_inside = brick == kNoBrickInside;
   if (brick >= 0) {
     const Eigen::Vector3i l = c - kBrickCells * b;
     const std::int16_t* v = field.values.data() +
@@ -201,6 +208,7 @@ FieldValue evaluate(const DistanceField& field, const Vec3& x) {
     result = interpolate(v, kBrickNodes, kBrickNodes * kBrickNodes, inside - c.cast<double>(),
                          field.scale, cell);
     result.in_band = std::abs(result.distance) <= field.trusted;
+    is_inside = result.distance < 0.0;
   }
   if (!result.in_band) {
     const int n = field.coarse_nodes();
@@ -208,7 +216,10 @@ FieldValue evaluate(const DistanceField& field, const Vec3& x) {
     const std::int16_t* v = field.coarse.data() + (l.z() * n + l.y()) * n + l.x();
     const Vec3 t = inside / kCoarseCells - l.cast<double>();
     result = interpolate(v, n, n * n, t, field.coarse_scale, kCoarseCells * cell);
-    result.in_band = false;
+    // The sign is known; the coarse value must not come nearer than the bricks reach.
+    const double nearest = field.nearest_coarse;
+    result.distance =
+        is_inside ? std::min(result.distance, -nearest) : std::max(result.distance, nearest);
   }
   const Vec3 beyond = (lattice - inside) * cell;
   const double distance = beyond.norm();

@@ -16,6 +16,8 @@ inline constexpr int kBrickCells = 8;  ///< cells per side of a brick
 inline constexpr int kBrickNodes = kBrickCells + 1;
 /// Values stored per brick: 9^3 lattice nodes, x fastest, and padding so that pairs can be read.
 inline constexpr int kBrickStride = 736;
+inline constexpr std::int32_t kNoBrickOutside = -1;
+inline constexpr std::int32_t kNoBrickInside = -2;
 inline constexpr int kCoarseCells = 4;   ///< fine cells per coarse cell and side
 inline constexpr int kFieldPadding = 4;  ///< cells between the shape's cube and the field's
 
@@ -35,7 +37,10 @@ struct DistanceField {
   float trusted = 0.0F;
   /// Largest slope of the interpolated field within bricks (about 1) [m/m].
   float slope = 1.0F;
-  /// Brick of each 8^3 cells, x fastest; -1 where the surface is farther than `band`.
+  /// No point that uses the coarse lattice is nearer to the surface than this [m].
+  float nearest_coarse = 0.0F;
+  /// Brick of each 8^3 cells, x fastest; where the surface is farther than `band`: kNoBrickOutside
+  /// or kNoBrickInside.
   std::vector<std::int32_t> brick;
   std::vector<std::int16_t> values;  ///< kBrickStride per brick
   /// Distances on every kCoarseCells-th node; (2 bricks + 1)^3, x fastest, with one value of

@@ -13,7 +13,7 @@ namespace gotai::voxel {
 namespace {
 
 /// Raise it whenever the same mesh and options lead to another shape.
-constexpr std::uint32_t kRecipe = 1;
+constexpr std::uint32_t kRecipe = 2;
 
 template <typename Simplex>
 void check_indices(const std::vector<Simplex>& simplices, std::size_t vertices, const char* kind) {
@@ -76,6 +76,7 @@ double voxel_bounding_radius(const PyramidLevel& level, double voxel_radius, con
 Hash128 content_hash(const geometry::Mesh& mesh, const ShapeOptions& options) {
   Hasher hasher;
   hasher.value(kRecipe).value(static_cast<std::int32_t>(options.prepared_level));
+  hasher.value(static_cast<std::int32_t>(options.surface_level));
   // Vectors and index arrays are plain coordinates without padding.
   hasher.array(std::span<const Vec3>(mesh.vertices));
   hasher.array(std::span<const geometry::Triangle>(mesh.triangles));
@@ -92,6 +93,9 @@ Shape make_shape(std::string name, geometry::Mesh mesh, const ShapeOptions& opti
   const VoxelSet inside = voxels_inside(mesh, grid, options.prepared_level);
   if (inside.empty()) throw_too_thin(mesh, grid, options.prepared_level);
   shape.pyramid = build_pyramid(grid, inside);
+  if (options.surface_level != 0) {
+    shape.surface = make_surface_model(mesh, options.surface_level);
+  }
   shape.name = std::move(name);
   shape.mesh = std::move(mesh);
   derive_radii(shape);

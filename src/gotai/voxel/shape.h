@@ -8,12 +8,15 @@
 #include "gotai/geometry/mass_properties.h"
 #include "gotai/geometry/mesh.h"
 #include "gotai/voxel/pyramid.h"
+#include "gotai/voxel/surface_model.h"
 
 namespace gotai::voxel {
 
 /// What a shape is prepared with.
 struct ShapeOptions {
   int prepared_level = 7;  ///< M, the finest level of the pyramid, 1..kMaxLevel
+  /// Level of the surface model, kMinSurfaceLevel..kMaxSurfaceLevel; 0: prepared without one.
+  int surface_level = 0;
 };
 
 /// A prepared shape. Immutable and shared between bodies. Lengths in metres, mesh frame M.
@@ -22,6 +25,7 @@ struct Shape {
   geometry::Mesh mesh;            ///< polygons for drawing, and the tetrahedra when there are any
   geometry::MassProperties mass;  ///< at density 1
   Pyramid pyramid;
+  SurfaceModel surface;  ///< for the collision model `surface`; empty unless asked for
   double bounding_radius = 0.0;  ///< farthest vertex from the centre of mass [m]
   /// Farthest surface of any voxel sphere from the centre of mass, per level (index h - 1) [m]:
   /// rho of the corrected time step (erratum 29).
@@ -33,7 +37,7 @@ struct Shape {
 /// hashes are equal but for their names.
 Hash128 content_hash(const geometry::Mesh& mesh, const ShapeOptions& options);
 
-/// Prepares a shape: mass properties and the voxel pyramid.
+/// Prepares a shape: mass properties, the voxel pyramid and, if asked for, the surface model.
 /// @param mesh  its tetrahedra define the body when there are any, else its closed surface does
 /// @throws InvalidArgument for a bad level, a vertex index out of range, a surface without
 ///   tetrahedra that is not closed, no volume, or a body so thin that no voxel's centre is inside

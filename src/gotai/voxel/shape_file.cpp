@@ -14,12 +14,13 @@
 #include "gotai/core/error.h"
 #include "gotai/core/hash.h"
 #include "gotai/voxel/byte_stream.h"
+#include "gotai/voxel/surface_file.h"
 
 namespace gotai::voxel {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'G', 'O', 'T', 'A', 'I', 'S', 'H', 'P'};
-constexpr std::uint32_t kFormatVersion = 1;
+constexpr std::uint32_t kFormatVersion = 2;
 
 struct Header {
   std::array<char, 8> magic = kMagic;
@@ -106,6 +107,7 @@ std::vector<std::byte> encode_shape(const Shape& shape) {
   out.text(shape.name);
   out.value(static_cast<std::int32_t>(shape.pyramid.max_level()));
   out.value(shape.content);
+  out.value(static_cast<std::int32_t>(shape.surface.level));
   out.array(shape.mesh.vertices);
   out.array(shape.mesh.triangles);
   out.array(shape.mesh.tetrahedra);
@@ -115,6 +117,7 @@ std::vector<std::byte> encode_shape(const Shape& shape) {
   out.value(shape.pyramid.grid.origin);
   out.value(shape.pyramid.grid.edge);
   out.array(shape.pyramid.levels.back().index);
+  encode_surface(out, shape.surface);
   return out.data();
 }
 
@@ -127,11 +130,15 @@ Shape decode_shape(std::span<const std::byte> payload, const std::string& path) 
   if (options.prepared_level < 1 || options.prepared_level > kMaxLevel)
     in.fail(fmt::format("is damaged: level {}, must be 1..{}", options.prepared_level, kMaxLevel));
   shape.content = in.value<Hash128>();
+  options.surface_level = in.value<std::int32_t>();
   shape.mesh = decode_mesh(in);
   if (shape.content != content_hash(shape.mesh, options))
     in.fail("was prepared by another version of Gotai; prepare it again from its mesh");
   shape.mass = decode_mass(in);
   shape.pyramid = decode_pyramid(in, options.prepared_level);
+  shape.surface = decode_surface(in);
+  if (shape.surface.level != options.surface_level)
+    in.fail("is damaged: the surface model has another level than announced");
   if (in.remaining() > 0) in.fail("is damaged: it goes on after its end");
   derive_radii(shape);
   return shape;

@@ -1,0 +1,38 @@
+/// @file
+/// Contacts of two bodies in the model `surface`: the samples of each in the distance field of the
+/// other, or above planes and the faces of containers.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "gotai/collision/broad_phase.h"
+#include "gotai/collision/surface_search.h"
+#include "gotai/model/body_state.h"
+#include "gotai/model/contact_set.h"
+#include "gotai/voxel/shape.h"
+
+namespace gotai::collision {
+
+/// Key of a contact: which of the two bodies the sample is on (0: body_a, 1: body_b), or for planes
+/// and containers which face it meets (floor 0, walls 1..4), and the sample.
+constexpr model::FeatureKey surface_feature(std::uint32_t direction, std::uint32_t sample) {
+  return static_cast<model::FeatureKey>(direction) << 32U | sample;
+}
+
+/// Turns the normal that a field suggests into one that the sample's own surface allows: the
+/// nearest direction in the cone of its outward normals, across the edge for samples of an edge.
+/// @param toward  unit, from the sample into the other body; the sample's frame S
+/// @return the same, within the cone; zero when the sample faces away from the other body
+Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, const Vec3& toward);
+
+/// Appends the contacts of one pair with a gap up to the margin; body_a has a shape, body_b a
+/// shape, a plane or a container. Every contact's area is its sample's.
+/// @param shapes  indexed by BodyState::shape, with surface models
+/// @param margin  [m], >= 0
+void append_surface_contacts(const model::BodyState& bodies, const BodyPair& pair,
+                             std::span<const std::shared_ptr<const voxel::Shape>> shapes,
+                             double margin, SurfaceSearch& scratch, model::ContactSet& out);
+
+}  // namespace gotai::collision

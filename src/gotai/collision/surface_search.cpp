@@ -1,0 +1,100 @@
+#include "gotai/collision/surface_search.h"
+
+#include <cmath>
+#include <utility>
+
+#include "gotai/collision/lanes.h"
+#include "gotai/collision/surface_search_bounds.h"
+
+// Why pruning loses nothing. Let f be the value that a sample gets: I(x), the interpolation of the
+// fine lattice (spacing c), where a brick holds it, else I_c(x) of the coarse lattice (spacing 4c),
+// kept at least `nearest_coarse` from 0 on the side that the brick table knows. All lattices hold
+// the distance phi, or phi clamped, at their nodes: both change by at most |x - y| between x and y.
+//
+// Let m be the centre of a sphere of radius r that contains the sample x; w_i and w_j the weights
+// of the nodes x_i around x and m_j around m. Since sum w_i x_i = x (likewise m),
+//   I(m) - I(x) = sum_ij w_i w_j (phi(m_j) - phi(x_i)) <= sum_ij w_i w_j |m_j - x_i|
+//     <= sqrt(sum_ij w_i w_j |m_j - x_i|^2) = sqrt(|m - x|^2 + V(m) + V(x)),
+// by Jensen; V(x) = sum_i w_i |x_i - x|^2 = s^2 sum t (1 - t) <= 3/4 s^2 for spacing s. So
+//   f(x) <= margin  implies  I(m) - margin <= sqrt(r^2 + 3/4 s_m^2 + 3/4 s_x^2).
+// The clamp of coarse values keeps it: raised values stay >= I_c(x), and lowered ones are >=
+// phi(x). A sample that uses the coarse lattice and is a hit lies inside, at phi(x) <=
+// -nearest_coarse, unless margin >= nearest_coarse; then phi(m) <= r - nearest_coarse keeps the
+// sphere anyway. So s_x = c is enough for margins below nearest_coarse.
+//
+// Beyond the lattice's cube, with x' the nearest point of the cube, f(x) = f(x') + |x - x'|. Then
+// f(x) >= f(x'), and |x' - m'| <= |x - m|, so the bound holds with I(m'). The cube's faces are four
+// cells from the shape, so f(x') > 0 and a hit has |x - x'| <= margin; hence |m - m'| <= r +
+// margin.
+
+#define GOTAI_KERNEL portable
+#define GOTAI_INLINE inline __attribute__((always_inline))
+
+namespace gotai::collision::portable {
+
+GOTAI_INLINE unsigned mask_of(I8 lanes) {
+  unsigned mask = 0;
+  for (int i = 0; i < kLanes; ++i) mask |= (static_cast<unsigned>(lanes[i]) >> 31U) << i;
+  return mask;
+}
+
+GOTAI_INLINE I8 gather(const std::int32_t* values, I8 index) {
+  I8 result;
+  for (int i = 0; i < kLanes; ++i) result[i] = values[index[i]];
+  return result;
+}
+
+// values[index] and values[index + 1] of every lane.
+GOTAI_INLINE void gather_pairs(const std::int16_t* values, I8 index, F8& first, F8& second) {
+  for (int i = 0; i < kLanes; ++i) {
+    first[i] = static_cast<float>(values[index[i]]);
+    second[i] = static_cast<float>(values[index[i] + 1]);
+  }
+}
+
+}  // namespace gotai::collision::portable
+
+#include "gotai/collision/surface_search_kernel.inc"
+
+namespace gotai::collision {
+namespace {
+
+bool use_avx2(Kernel kernel) {
+  static const bool available = is_available(Kernel::avx2);
+  return kernel == Kernel::avx2 || (kernel == Kernel::automatic && available);
+}
+
+}  // namespace
+
+bool is_available(Kernel kernel) {
+  if (kernel != Kernel::avx2) return true;
+#ifdef __x86_64__
+  return __builtin_cpu_supports("avx2") != 0;
+#else
+  return false;
+#endif
+}
+
+void search_field(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                  const SamplePose& pose, float margin, SurfaceSearch& search, Kernel kernel) {
+#ifdef __x86_64__
+  if (use_avx2(kernel)) {
+    search_field_avx2(samples, field, pose, margin, search);
+    return;
+  }
+#endif
+  portable::search_field(samples, field, pose, margin, search);
+}
+
+void search_half_space(const voxel::SurfaceTree& samples, const std::array<float, 3>& normal,
+                       float offset, float margin, SurfaceSearch& search, Kernel kernel) {
+#ifdef __x86_64__
+  if (use_avx2(kernel)) {
+    search_half_space_avx2(samples, normal, offset, margin, search);
+    return;
+  }
+#endif
+  portable::search_half_space(samples, normal, offset, margin, search);
+}
+
+}  // namespace gotai::collision

@@ -1,0 +1,56 @@
+/// @file
+/// Which samples of one surface are near another: descent of an 8-ary sample tree in a distance
+/// field or above a plane, eight lanes at a time. The AVX2 and the portable path give the same
+/// bits.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "gotai/core/types.h"
+#include "gotai/voxel/surface_model.h"
+
+namespace gotai::collision {
+
+/// Rigid transform in single precision from the frame S of the samples to the frame S of the field
+/// (or of a plane): x_field = rotation x + translation.
+struct SamplePose {
+  std::array<float, 9> rotation;     ///< row by row
+  std::array<float, 3> translation;  ///< [m]
+};
+
+/// A sample and what the field says there.
+struct SurfaceHit {
+  std::uint32_t sample = 0;         ///< index in the tree
+  float distance = 0.0F;            ///< [m], < 0 inside
+  std::array<float, 3> gradient{};  ///< of the field, in its frame; about unit length
+};
+
+/// Storage of a search, and the work it did.
+struct SurfaceSearch {
+  std::vector<SurfaceHit> hits;       ///< result, by ascending sample
+  std::uint64_t tests = 0;            ///< spheres and samples looked up, summed over searches
+  std::vector<std::uint32_t> packet;  ///< of the height being searched
+  std::vector<std::uint32_t> next;
+};
+
+/// Instruction set of the kernels.
+enum class Kernel : std::uint8_t { automatic, portable, avx2 };
+/// Whether this processor and build can run a kernel.
+bool is_available(Kernel kernel);
+
+/// Finds exactly the samples whose interpolated field value is at most `margin`: the same as
+/// looking at all of them. Proof in surface_search.cpp.
+void search_field(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                  const SamplePose& pose, float margin, SurfaceSearch& search,
+                  Kernel kernel = Kernel::automatic);
+
+/// Finds the samples whose height above a plane, normal . x + offset, is at most `margin`.
+/// @param normal  unit, in the samples' frame S; also the gradient of the hits
+/// @param offset  [m]
+void search_half_space(const voxel::SurfaceTree& samples, const std::array<float, 3>& normal,
+                       float offset, float margin, SurfaceSearch& search,
+                       Kernel kernel = Kernel::automatic);
+
+}  // namespace gotai::collision

@@ -1,0 +1,62 @@
+// The same search with AVX2 instructions. Only functions below the pragma may use them, and they
+// call nothing that other files share.
+#ifdef __x86_64__
+
+#include <immintrin.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "gotai/collision/lanes.h"
+#include "gotai/collision/surface_search.h"
+#include "gotai/collision/surface_search_bounds.h"
+
+#pragma GCC push_options
+#pragma GCC target("avx2")
+
+#define GOTAI_KERNEL avx2
+#define GOTAI_INLINE inline __attribute__((always_inline))
+
+namespace gotai::collision::avx2 {
+
+GOTAI_INLINE unsigned mask_of(I8 lanes) {
+  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps((__m256i)lanes)));
+}
+
+GOTAI_INLINE I8 gather(const std::int32_t* values, I8 index) {
+  return (I8)_mm256_i32gather_epi32(values, (__m256i)index, 4);
+}
+
+// values[index] and values[index + 1] of every lane, in one 32-bit gather.
+GOTAI_INLINE void gather_pairs(const std::int16_t* values, I8 index, F8& first, F8& second) {
+  const auto* base = reinterpret_cast<const int*>(values);
+  const I8 both = (I8)_mm256_i32gather_epi32(base, (__m256i)index, 2);
+  first = __builtin_convertvector((both << 16) >> 16, F8);
+  second = __builtin_convertvector(both >> 16, F8);
+}
+
+}  // namespace gotai::collision::avx2
+
+#include "gotai/collision/surface_search_kernel.inc"
+
+namespace gotai::collision {
+
+void search_field_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                       const SamplePose& pose, float margin, SurfaceSearch& search) {
+  avx2::search_field(samples, field, pose, margin, search);
+}
+
+void search_half_space_avx2(const voxel::SurfaceTree& samples, const std::array<float, 3>& normal,
+                            float offset, float margin, SurfaceSearch& search) {
+  avx2::search_half_space(samples, normal, offset, margin, search);
+}
+
+}  // namespace gotai::collision
+
+#pragma GCC pop_options
+
+#endif

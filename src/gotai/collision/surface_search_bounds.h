@@ -1,0 +1,31 @@
+/// @file
+/// Constants of the bound that prunes the descent. Internal to the surface search; the proof is in
+/// surface_search.cpp.
+#pragma once
+
+#include <array>
+
+#include "gotai/collision/surface_search.h"
+#include "gotai/voxel/distance_field.h"
+
+namespace gotai::collision {
+
+/// Rounding of stored values: one fine and one coarse unit are below this for all fields [cells].
+inline constexpr float kStoredRounding = 0.02F;
+
+/// What is added to the square of a sphere's radius when the value at its centre comes from the
+/// fine and from the coarse lattice [cells^2]: 3/4 s_m^2 + 3/4 s_x^2.
+inline std::array<float, 2> squared_slack(const voxel::DistanceField& field, float margin) {
+  constexpr float kFine = 0.75F;
+  constexpr float kCoarse = 0.75F * voxel::kCoarseCells * voxel::kCoarseCells;
+  const float at_sample = margin < field.nearest_coarse ? kFine : kCoarse;
+  return {kFine + at_sample, kCoarse + at_sample};
+}
+
+// The AVX2 builds of search_field and search_half_space. Only for processors that have it.
+void search_field_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                       const SamplePose& pose, float margin, SurfaceSearch& search);
+void search_half_space_avx2(const voxel::SurfaceTree& samples, const std::array<float, 3>& normal,
+                            float offset, float margin, SurfaceSearch& search);
+
+}  // namespace gotai::collision
