@@ -28,7 +28,10 @@ struct ShapeDescription {
   geometry::LoadOptions load;            ///< files: unit, up axis, scale
   double size = 0.0;                     ///< files: largest extent after scaling [m]; 0 keeps it
   int prepared_level = 7;                ///< M of the pyramid
-  std::uint32_t material = 0;            ///< of bodies that name none
+  /// Level of the surface model; 0: none. By default the level of [collision] when its model is
+  /// "surface".
+  int surface_level = 0;
+  std::uint32_t material = 0;  ///< of bodies that name none
 };
 
 /// [[bodies]]: one body, or one per line of a pose file.

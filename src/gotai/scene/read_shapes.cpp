@@ -54,6 +54,12 @@ ShapeDescription read_shape(const Entry& entry, SceneDescription& scene) {
                      "at least that level",
                      shape.prepared_level, scene.settings.collision.level));
   }
+  const bool needs_surface = scene.settings.collision.model == model::CollisionModel::surface;
+  const int surface_level =
+      std::clamp(scene.settings.collision.level, voxel::kMinSurfaceLevel, voxel::kMaxSurfaceLevel);
+  shape.surface_level =
+      static_cast<int>(table.integer("surface_level", needs_surface ? surface_level : 0,
+                                     voxel::kMinSurfaceLevel, voxel::kMaxSurfaceLevel));
   shape.material = read_material(table, scene).value_or(0);
   const Node* mesh = table.find("mesh");
   const Node* generator = table.find("generate");
