@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -153,10 +154,9 @@ double worst_error(const RecordingReader& recording, const Glb& glb) {
   return worst;
 }
 
-/// The report of gltf-validator; null when it is not available.
-json validate(const std::string& path) {
-  const std::string command =
-      fmt::format("'{}/tests/gltf/validate.sh' '{}'", GOTAI_SOURCE_DIR, path);
+/// What a program of the tests folder prints about a file; null when it fails or cannot be had.
+json run_reader(const std::string& program, const std::string& path) {
+  const std::string command = fmt::format("{}/tests/{} '{}'", GOTAI_SOURCE_DIR, program, path);
   FILE* pipe = popen(command.c_str(), "r");
   std::string out;
   std::array<char, 4096> part{};
@@ -216,7 +216,7 @@ TEST(ExportGltf, TheValidatorFindsNothing) {
   for (const char* name : {"cubes", "flying"}) {
     const std::string path = folder.file(fmt::format("{}.glb", name));
     export_recording(RecordingReader(folder.file(fmt::format("{}.h5", name))), path);
-    const json report = validate(path);
+    const json report = run_reader("gltf/validate.sh", path);
     if (report.is_null()) GTEST_SKIP() << "needs node and gltf-validator (npm ci in tests/gltf)";
     EXPECT_EQ(report["errors"], 0) << report["messages"].dump(1);
     EXPECT_EQ(report["warnings"], 0) << report["messages"].dump(1);
@@ -232,6 +232,43 @@ TEST(ExportGltf, TextAndBinaryHoldTheSame) {
   export_recording(recording, folder.file("run.glb"));
   EXPECT_EQ(text["nodes"], Glb(folder.file("run.glb")).document["nodes"]);
   EXPECT_THAT(text["buffers"][0]["uri"].get<std::string>(), HasSubstr("base64"));
+}
+
+TEST(ExportVtk, ReadsBackInAnotherLanguage) {
+  if (std::system("python3 --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "needs python3";
+  test::TemporaryFolder folder;
+  record(folder.file("run.h5"), test::falling_cubes(2), 1.0);
+  const RecordingReader recording(folder.file("run.h5"));
+  export_recording(recording, folder.file("run.pvd"));
+  const json sets = run_reader("support/read_vtk.py", folder.file("run.pvd"));
+  ASSERT_EQ(sets.size(), 2 * recording.frame_count());
+  std::size_t contacts = 0;
+  for (std::size_t f = 0; f < recording.frame_count(); ++f) {
+    const Frame frame = recording.frame(f);
+    const json& bodies = sets[2 * f];
+    EXPECT_EQ(bodies["name"], "bodies");
+    EXPECT_EQ(bodies["time"].get<double>(), frame.time);
+    EXPECT_EQ(bodies["points"], 4 + 8 + 2 * 8) << "floor, tray, two cubes";
+    EXPECT_EQ(bodies["cells"], 2 + 10 + 2 * 12);
+    Vec3 velocity = Vec3::Zero();
+    double places = 0.0;
+    for (std::size_t i = 0; i < frame.poses.size(); ++i) {
+      if (recording.bodies()[i].geometry != model::Geometry::shape) continue;
+      velocity += 8 * frame.v_W[i];  // a cube's vertices turn about its centre
+      places += 8 * frame.poses[i].p.sum();
+    }
+    EXPECT_NEAR(bodies["sums"]["PointData/velocity"].get<double>(), velocity.sum(), 1e-3);
+    // The floor is centred on the origin; the tray stands at x = 5 and is 1 high.
+    EXPECT_NEAR(bodies["sums"]["Points/points"].get<double>(), places + 8 * 5.0 + 4 * 1.0, 1e-2);
+    const json& points = sets[2 * f + 1];
+    const auto recorded = recording.contacts(f);
+    ASSERT_EQ(points["points"], recorded.size());
+    double gaps = 0.0;
+    for (const RecordedContact& contact : recorded) gaps += contact.gap;
+    EXPECT_NEAR(points["sums"]["PointData/gap"].get<double>(), gaps, 1e-6);
+    contacts += recorded.size();
+  }
+  EXPECT_GT(contacts, 0u);
 }
 
 TEST(Export, AnUnknownExtensionNamesTheKnownOnes) {

@@ -37,8 +37,9 @@ void export_recording(const RecordingReader& recording, const std::string& path)
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".csv") return export_csv(recording, path);
   if (extension == ".glb" || extension == ".gltf") return export_gltf(recording, path);
+  if (extension == ".pvd") return export_vtk(recording, path);
   throw FileError(path, fmt::format("\"{}\" is no format to export to; use .csv (table), .glb or "
-                                    ".gltf (animation)",
+                                    ".gltf (animation), .pvd (ParaView)",
                                     extension));
 }
 

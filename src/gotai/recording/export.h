@@ -25,4 +25,10 @@ void export_csv(const RecordingReader& recording, const std::string& path);
 void export_gltf(const RecordingReader& recording, const std::string& path,
                  double tolerance = 5e-4);
 
+/// For ParaView: an index (.pvd) and, in a folder named after it, two VTK files per frame.
+/// frame_N.vtp: the polygons of all bodies at their places; point data "velocity" [m/s], cell data
+/// "body" and "material". contacts_N.vtp: points with "normal", "impulse" [N s], "gap" [m] and the
+/// two bodies.
+void export_vtk(const RecordingReader& recording, const std::string& path);
+
 }  // namespace gotai::recording

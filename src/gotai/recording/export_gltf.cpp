@@ -13,6 +13,7 @@
 #include "gotai/core/error.h"
 #include "gotai/recording/export.h"
 #include "gotai/recording/output_stream.h"
+#include "gotai/recording/surroundings.h"
 #include "gotai/recording/thin_keys.h"
 
 namespace gotai::recording {
@@ -229,38 +230,6 @@ void animate(Document& document, int node, const Track& track, double diagonal, 
   }
 }
 
-geometry::Mesh plane_quad(double half) {
-  return {{{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}},
-          {{0, 1, 2}, {0, 2, 3}},
-          {}};
-}
-
-/// Floor and walls of a container, seen from inside.
-geometry::Mesh container_box(const Vec3& half) {
-  geometry::Mesh mesh;
-  for (const double z : {0.0, half.z()}) {
-    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
-      mesh.vertices.emplace_back(x * half.x(), y * half.y(), z);
-    }
-  }
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  for (std::uint32_t i = 0; i < 4; ++i) {
-    const std::uint32_t j = (i + 1) % 4;
-    mesh.triangles.push_back({i, i + 4, j + 4});
-    mesh.triangles.push_back({i, j + 4, j});
-  }
-  return mesh;
-}
-
-/// Half edge of the quad that stands for a plane: all bodies lie over it.
-double plane_size(const std::vector<Track>& tracks) {
-  double far = 1.0;
-  for (const Track& track : tracks) {
-    for (const Vec3& p : track.positions) far = std::max(far, p.cwiseAbs().maxCoeff());
-  }
-  return 1.5 * far;
-}
-
 }  // namespace
 
 void export_gltf(const RecordingReader& recording, const std::string& path, double tolerance) {
@@ -275,6 +244,7 @@ void export_gltf(const RecordingReader& recording, const std::string& path, doub
   std::map<std::uint32_t, tinygltf::Primitive> surfaces;          // by shape
   std::map<std::uint32_t, int> materials;                         // by material
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> meshes;  // by shape and material
+  const double plane_edge = plane_half_edge(recording);
   int ground = -1;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const RecordedBody& body = recording.bodies()[i];
@@ -282,9 +252,7 @@ void export_gltf(const RecordingReader& recording, const std::string& path, doub
     if (track.times.empty()) continue;
     if (body.geometry != model::Geometry::shape) {
       if (ground < 0) ground = document.add_material("surroundings", {0.7, 0.7, 0.7}, true);
-      const geometry::Mesh mesh = body.geometry == model::Geometry::plane
-                                      ? plane_quad(plane_size(tracks))
-                                      : container_box(body.half_extent);
+      const geometry::Mesh mesh = drawing_of(recording, i, plane_edge);
       const int id = document.add_mesh(body.name, document.add_surface(mesh), ground);
       document.add_node(body.name, id, track.positions.front(), track.rotations.front());
       continue;
