@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <ctime>
 #include <map>
 #include <regex>
 
 #include "gotai/core/error.h"
-#include "gotai/core/stopwatch.h"
 #include "gotai/geometry/load_mesh.h"
 #include "support/golden.h"
 
@@ -173,9 +173,10 @@ TEST(Assets, EveryDamagedMeshIsNamedOrRefusedInTime) {
   std::size_t refused = 0;
   for (const auto& [name, row] : rows) {
     const fs::path path = test::shared_dir() / "assets/dirty" / name;
-    const Stopwatch watch;
+    // Processor time: the machine may be busy with other things.
+    const std::clock_t start = std::clock();
     expect_findings(path);
-    EXPECT_LT(watch.seconds(), 5.0) << name;
+    EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 5.0) << name;
     const Outcome outcome = load(path);
     if (outcome.refused) ++refused;
     if (!outcome.refused && !row.at("vertices").empty()) {
