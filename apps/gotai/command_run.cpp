@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "commands.h"
+#include "console.h"
+#include "exit_code.h"
+#include "gotai/core/error.h"
+#include "gotai/core/parallel.h"
+#include "gotai/core/stopwatch.h"
+#include "gotai/recording/recorder.h"
+#include "gotai/world/run_summary.h"
+#include "interrupt.h"
+#include "output_file.h"
+#include "scene_options.h"
+#include "summary_text.h"
+
+namespace gotai::cli {
+namespace {
+
+constexpr const char* kFooter = R"(Examples:
+  gotai run scene.toml -o run.h5
+  gotai run scene.toml -o run.h5 --set impulse.method=penalty --set world.duration=2
+  gotai run scene.toml --json --threads 1          only the figures, nothing is recorded
+Ctrl-C finishes the step and closes the recording; what was flushed survives even kill -9.
+`gotai info run.h5` and `gotai export run.h5 -o run.glb` go on from there.)";
+
+struct RunOptions {
+  SceneOptions scene;
+  std::string output;
+  bool force = false;
+};
+
+std::string progress_text(const World& world, double duration, const model::StepReport& report,
+                          double wall_s) {
+  const double done = std::clamp(world.time() / duration, 0.0, 1.0);
+  constexpr int kWidth = 24;
+  const int filled = static_cast<int>(done * kWidth);
+  return fmt::format(
+      "[{:=<{}}{: <{}}] {:3.0f} %  t = {:.3f} s  {} contacts  {:.3g} ms/step  {} left", "", filled,
+      "", kWidth - filled, 100.0 * done, world.time(), report.contacts, 1e3 * report.total_s(),
+      done > 0.0 ? format_duration(wall_s * (1.0 - done) / done) : "?");
+}
+
+recording::Recorder start_recording(const RunOptions& options, const scene::SceneDescription& scene,
+                                    const World& world) {
+  if (options.force) std::filesystem::remove(options.output);
+  recording::RecorderOptions recorder;
+  recorder.fps = scene.record.fps;
+  recorder.contacts = scene.record.contacts;
+  recorder.checkpoint = scene.record.checkpoint;
+  return {options.output, world, {scene.path, scene.text, scene.overrides}, recorder};
+}
+
+// Steps to the end or the interruption.
+void simulate(World& world, double duration, RunMonitor& monitor,
+              std::optional<recording::Recorder>& recorder, const InterruptGuard& guard,
+              const Stopwatch& watch) {
+  ProgressLine progress;
+  while (!world.has_reached(duration) && !guard.is_interrupted()) {
+    const model::StepReport report = world.step();
+    monitor.on_step(world, report);
+    if (recorder) recorder->on_step(world, report);
+    if (progress.is_due()) {
+      progress.show(progress_text(world, duration, report, watch.seconds()));
+    }
+  }
+}
+
+int run_scene(const RunOptions& options) {
+  const ThreadLimit threads(options.scene.threads);
+  if (!options.output.empty()) require_free(options.output, options.force);
+  OpenedScene scene = open_scene(options.scene, true);
+  World& world = *scene.built.world;
+
+  const InterruptGuard guard;
+  std::optional<recording::Recorder> recorder;
+  if (!options.output.empty()) recorder.emplace(start_recording(options, scene.description, world));
+  const Stopwatch watch;
+  RunMonitor monitor(world);
+  simulate(world, scene.description.duration, monitor, recorder, guard, watch);
+  const RunSummary summary = monitor.summary(world, watch.seconds());
+  if (recorder) recorder->finish(world, to_json(summary).dump());
+
+  if (options.scene.json) {
+    print(to_json(summary).dump() + "\n");
+  } else {
+    print(to_table(summary));
+    if (recorder) print(fmt::format("recorded in {}\n", options.output));
+  }
+  if (!guard.is_interrupted()) return kSuccess;
+  print_error(fmt::format("interrupted at t = {:.4g} s of {:.4g} s{}", world.time(),
+                          scene.description.duration,
+                          recorder ? "; the recording is closed and readable" : ""));
+  return kInterrupted;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, Action& action) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Simulate a scene and record it");
+  command->footer(kFooter);
+  add_scene_options(*command, options->scene);
+  command
+      ->add_option("-o,--output", options->output,
+                   "Recording to write (HDF5); without it nothing is recorded")
+      ->type_name("OUT.h5");
+  command->add_flag("--force", options->force, "Overwrite an existing output");
+  command->callback([options, &action] { action = [options] { return run_scene(*options); }; });
+}
+
+}  // namespace gotai::cli

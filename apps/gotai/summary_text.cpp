@@ -1,0 +1,63 @@
+#include "summary_text.h"
+
+#include <fmt/format.h>
+
+#include "console.h"
+
+namespace gotai::cli {
+
+nlohmann::ordered_json to_json(const RunSummary& s) {
+  return {
+      {"bodies", s.bodies},
+      {"steps", s.steps},
+      {"simulated_s", s.simulated_s},
+      {"wall_s", s.wall_s},
+      {"step_ms",
+       {{"mean", s.step_ms.mean},
+        {"p95", s.step_ms.p95},
+        {"max", s.step_ms.max},
+        {"last_second_mean", s.step_ms.last_second_mean}}},
+      {"phase_ms",
+       {{"collision", s.phase_ms.collision},
+        {"impulse", s.phase_ms.impulse},
+        {"integration", s.phase_ms.integration},
+        {"other", s.phase_ms.other}}},
+      {"contacts", {{"mean", s.contacts.mean}, {"max", s.contacts.max}}},
+      {"overlap", {{"max", s.overlap.max}, {"mean", s.overlap.mean}}},
+      {"energy",
+       {{"initial", s.energy.initial}, {"final", s.energy.final}, {"max_gain", s.energy.max_gain}}},
+      {"momentum_error", s.momentum_error},
+      {"residual_max", s.residual_max},
+      {"escaped", s.escaped},
+      {"state_hash", s.state_hash},
+  };
+}
+
+std::string to_table(const RunSummary& s) {
+  Report report;
+  report.row("simulated", fmt::format("{:.4g} s in {} steps, {} bodies", s.simulated_s,
+                                      format_count(s.steps), format_count(s.bodies)));
+  report.row("took", fmt::format("{} ({:.3g} times real time)", format_duration(s.wall_s),
+                                 s.wall_s > 0.0 ? s.simulated_s / s.wall_s : 0.0));
+  report.row("per step",
+             fmt::format("{:.3g} ms mean, {:.3g} ms 95 %, {:.3g} ms max, {:.3g} ms in "
+                         "the last second",
+                         s.step_ms.mean, s.step_ms.p95, s.step_ms.max, s.step_ms.last_second_mean));
+  report.row("phases", fmt::format("collision {:.3g} ms, impulse {:.3g} ms, integration {:.3g} ms, "
+                                   "other {:.3g} ms",
+                                   s.phase_ms.collision, s.phase_ms.impulse, s.phase_ms.integration,
+                                   s.phase_ms.other));
+  report.row("contacts",
+             fmt::format("{:.4g} mean, {} max", s.contacts.mean, format_count(s.contacts.max)));
+  report.row("overlap", fmt::format("{} mean, {} max (the collision model's own)",
+                                    format_length(s.overlap.mean), format_length(s.overlap.max)));
+  report.row("energy", fmt::format("{:.6g} J to {:.6g} J, largest gain {:.2g} J", s.energy.initial,
+                                   s.energy.final, s.energy.max_gain));
+  report.row("momentum error", fmt::format("{:.2g} of the largest momentum", s.momentum_error));
+  report.row("solver residual", fmt::format("{:.2g} m/s max", s.residual_max));
+  report.row("escaped", s.escaped == 0 ? "none" : format_count(s.escaped) + " bodies");
+  report.row("state hash", s.state_hash);
+  return report.text();
+}
+
+}  // namespace gotai::cli
