@@ -107,8 +107,17 @@ void World::aim_kinematic_bodies(double dt) {
 }
 
 void World::check_state() const {
+  // No body of a sound run crosses ten thousand times its own size within a step.
+  constexpr double kMostSizesPerStep = 1e4;
   try {
     model::validate(bodies_);
+    for (model::BodyIndex i = 0; i < bodies_.size(); ++i) {
+      const double size = bodies_.bounding_radius[i];
+      const double speed = bodies_.v_W[i].norm() + size * bodies_.w_W[i].norm();
+      if (!bodies_.is_dynamic(i) || speed * last_dt_ <= kMostSizesPerStep * size) continue;
+      throw SimulationError("body \"" + names_[i] + "\" moves at " + std::to_string(speed) +
+                            " m/s: the energy ran away");
+    }
   } catch (const SimulationError& error) {
     throw SimulationError("step " + std::to_string(step_count_) + " (t = " + std::to_string(time_) +
                           " s): " + error.what() +

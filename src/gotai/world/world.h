@@ -93,7 +93,8 @@ class World {
   // ---- stepping
   // -----------------------------------------------------------------------------------
   /// One step [Makino 2007, Fig. 4-9]: detect, compute impulses, update.
-  /// @throws SimulationError naming step and body when the state stops being finite
+  /// @throws SimulationError naming step and body when the state stops being finite or the energy
+  /// runs away
   model::StepReport step();
   /// Has the world come to this time [s]? Sums of equal steps may miss it by round-off.
   bool has_reached(double end) const { return end - time_ <= 1e-9 * last_dt_; }
