@@ -380,7 +380,9 @@ TEST(FindContacts, AReplacedShapeIsNoticed) {
   test::add_test_boundary(scene.bodies, Geometry::plane);
   EXPECT_EQ(scene.find().size(), 16U);
   scene.shapes[0] = test::ring(3);
+  scene.bodies.x_W[0].z() = 0.1;
   const ContactSet contacts = scene.find();
+  EXPECT_GT(contacts.size(), 0U);
   Scene fresh(3);
   fresh.shapes = scene.shapes;
   fresh.bodies = scene.bodies;
