@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "commands.h"
 #include "console.h"
@@ -12,6 +14,7 @@
 #include "gotai/core/parallel.h"
 #include "gotai/core/stopwatch.h"
 #include "gotai/recording/recorder.h"
+#include "gotai/recording/recording_reader.h"
 #include "gotai/world/run_summary.h"
 #include "interrupt.h"
 #include "output_file.h"
@@ -25,12 +28,15 @@ constexpr const char* kFooter = R"(Examples:
   gotai run scene.toml -o run.h5
   gotai run scene.toml -o run.h5 --set impulse.method=penalty --set world.duration=2
   gotai run scene.toml --json --threads 1          only the figures, nothing is recorded
+  gotai run --resume run.h5                        go on with an interrupted run, bit for bit
+  gotai run --resume run.h5 --set world.duration=9 the same, and longer
 Ctrl-C finishes the step and closes the recording; what was flushed survives even kill -9.
 `gotai info run.h5` and `gotai export run.h5 -o run.glb` go on from there.)";
 
 struct RunOptions {
   SceneOptions scene;
   std::string output;
+  std::string resumed;  ///< recording to go on with; "" for a new run
   bool force = false;
 };
 
@@ -45,14 +51,38 @@ std::string progress_text(const World& world, double duration, const model::Step
       done > 0.0 ? format_duration(wall_s * (1.0 - done) / done) : "?");
 }
 
+recording::RecorderOptions recorder_options(const scene::RecordSettings& record) {
+  recording::RecorderOptions options;
+  options.fps = record.fps;
+  options.contacts = record.contacts;
+  options.checkpoint = record.checkpoint;
+  return options;
+}
+
 recording::Recorder start_recording(const RunOptions& options, const scene::SceneDescription& scene,
                                     const World& world) {
   if (options.force) std::filesystem::remove(options.output);
-  recording::RecorderOptions recorder;
-  recorder.fps = scene.record.fps;
-  recorder.contacts = scene.record.contacts;
-  recorder.checkpoint = scene.record.checkpoint;
-  return {options.output, world, {scene.path, scene.text, scene.overrides}, recorder};
+  return {options.output,
+          world,
+          {scene.path, scene.text, scene.overrides},
+          recorder_options(scene.record)};
+}
+
+// The scene of a recording. Only what leaves its past as it is may be overridden.
+OpenedScene reopen_scene(const RunOptions& options) {
+  for (const std::string& assignment : options.scene.overrides) {
+    if (assignment.starts_with("world.duration=") || assignment.starts_with("record.checkpoint=")) {
+      continue;
+    }
+    throw InvalidArgument("--set", assignment,
+                          "a resumed run keeps its scene; only world.duration and "
+                          "record.checkpoint may change");
+  }
+  const recording::RecordingReader recording(options.resumed);
+  std::vector<std::string> overrides = recording.overrides();
+  overrides.insert(overrides.end(), options.scene.overrides.begin(), options.scene.overrides.end());
+  return build_scene(scene::parse_scene(recording.scene_text(), recording.scene_path(), overrides),
+                     true);
 }
 
 // Steps to the end or the interruption.
@@ -70,15 +100,25 @@ void simulate(World& world, double duration, RunMonitor& monitor,
   }
 }
 
+std::optional<recording::Recorder> open_recorder(const RunOptions& options,
+                                                 const scene::SceneDescription& scene,
+                                                 World& world) {
+  if (!options.resumed.empty()) {
+    return recording::Recorder::resume(options.resumed, world, recorder_options(scene.record));
+  }
+  if (!options.output.empty()) return start_recording(options, scene, world);
+  return std::nullopt;
+}
+
 int run_scene(const RunOptions& options) {
   const ThreadLimit threads(options.scene.threads);
   if (!options.output.empty()) require_free(options.output, options.force);
-  OpenedScene scene = open_scene(options.scene, true);
+  OpenedScene scene =
+      options.resumed.empty() ? open_scene(options.scene, true) : reopen_scene(options);
   World& world = *scene.built.world;
 
   const InterruptGuard guard;
-  std::optional<recording::Recorder> recorder;
-  if (!options.output.empty()) recorder.emplace(start_recording(options, scene.description, world));
+  std::optional<recording::Recorder> recorder = open_recorder(options, scene.description, world);
   const Stopwatch watch;
   RunMonitor monitor(world);
   simulate(world, scene.description.duration, monitor, recorder, guard, watch);
@@ -89,12 +129,12 @@ int run_scene(const RunOptions& options) {
     print(to_json(summary).dump() + "\n");
   } else {
     print(to_table(summary));
-    if (recorder) print(fmt::format("recorded in {}\n", options.output));
+    if (recorder) print(fmt::format("recorded in {}\n", recorder->path()));
   }
   if (!guard.is_interrupted()) return kSuccess;
   print_error(fmt::format("interrupted at t = {:.4g} s of {:.4g} s{}", world.time(),
                           scene.description.duration,
-                          recorder ? "; the recording is closed and readable" : ""));
+                          recorder ? "; go on with: gotai run --resume " + recorder->path() : ""));
   return kInterrupted;
 }
 
@@ -110,7 +150,20 @@ void add_run_command(CLI::App& app, Action& action) {
                    "Recording to write (HDF5); without it nothing is recorded")
       ->type_name("OUT.h5");
   command->add_flag("--force", options->force, "Overwrite an existing output");
-  command->callback([options, &action] { action = [options] { return run_scene(*options); }; });
+  CLI::Option* scene = command->get_option("SCENE")->required(false);
+  command
+      ->add_option("--resume", options->resumed,
+                   "Go on with this recording from its last checkpoint, instead of SCENE")
+      ->type_name("RUN.h5")
+      ->excludes(scene)
+      ->excludes("--output")
+      ->excludes("--force");
+  command->callback([options, &action] {
+    if (options->scene.path.empty() && options->resumed.empty()) {
+      throw CLI::RequiredError("SCENE or --resume RUN.h5");
+    }
+    action = [options] { return run_scene(*options); };
+  });
 }
 
 }  // namespace gotai::cli

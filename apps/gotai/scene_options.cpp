@@ -1,5 +1,7 @@
 #include "scene_options.h"
 
+#include <utility>
+
 #include "console.h"
 #include "gotai/voxel/shape_cache.h"
 
@@ -19,8 +21,12 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 }
 
 OpenedScene open_scene(const SceneOptions& options, bool refuse_overlaps) {
+  return build_scene(scene::load_scene(options.path, options.overrides), refuse_overlaps);
+}
+
+OpenedScene build_scene(scene::SceneDescription description, bool refuse_overlaps) {
   OpenedScene opened;
-  opened.description = scene::load_scene(options.path, options.overrides);
+  opened.description = std::move(description);
   ProgressLine progress;
   scene::BuildOptions build;
   build.cache_folder = voxel::default_cache_folder();

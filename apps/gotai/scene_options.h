@@ -27,5 +27,7 @@ struct OpenedScene {
   scene::BuiltScene built;
 };
 OpenedScene open_scene(const SceneOptions& options, bool refuse_overlaps);
+/// The second half of open_scene.
+OpenedScene build_scene(scene::SceneDescription description, bool refuse_overlaps);
 
 }  // namespace gotai::cli

@@ -184,6 +184,32 @@ TEST(KilledWriter, AJournalIsFinishedOrDropped) {
   EXPECT_FALSE(std::filesystem::exists(journal_path(path)));
 }
 
+TEST(KilledWriter, AJournalOfAnotherFileIsNotApplied) {
+  test::TemporaryFolder folder;
+  const std::string path = folder.file("a.h5");
+  std::ofstream(journal_path(path)) << "of a file that was removed";
+  {
+    Hdf5File file = Hdf5File::create(path);
+    EXPECT_EQ(std::filesystem::file_size(journal_path(path)), 0u);
+    file.write<double>("/a", {1}, {1});
+    file.flush();
+  }
+  EXPECT_FALSE(std::filesystem::exists(journal_path(path)));
+}
+
+TEST(KilledWriter, BeforeTheFirstFlushLeavesAnEmptyFile) {
+  test::TemporaryFolder folder;
+  std::ofstream(folder.file("a.h5")).flush();
+  for (const auto open : {Hdf5File::read, Hdf5File::append}) {
+    try {
+      open(folder.file("a.h5"));
+      FAIL();
+    } catch (const FileError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("before anything was recorded"));
+    }
+  }
+}
+
 TEST(FullDisk, KeepsWhatWasFlushed) {
   test::TemporaryFolder folder;
   const std::string path = folder.file("a.h5");

@@ -132,6 +132,14 @@ bool read_hyperslab(hid_t dataset, hid_t type, std::uint64_t begin,
   return H5Dread(dataset, type, target, source, H5P_DEFAULT, out) >= 0;
 }
 
+/// A file whose writer was killed before its first flush.
+void require_content(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::file_size(path, error) > 0 || error) return;
+  throw FileError(path,
+                  "is empty: its run ended before anything was recorded; remove it and start anew");
+}
+
 std::string failure_text(const std::string& fallback) {
   return transaction_failure().empty() ? fallback : transaction_failure();
 }
@@ -152,7 +160,9 @@ Hdf5File Hdf5File::create(const std::string& path) {
 
 Hdf5File Hdf5File::append(const std::string& path) {
   silence();
+  if (!std::filesystem::exists(path)) throw FileError(path, "does not exist");
   if (recover(path)) throw FileError(path, "is being written by another process");
+  require_content(path);
   const Handle access(make_transaction_access(), H5Pclose);
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
   if (id < 0)
@@ -165,6 +175,7 @@ Hdf5File Hdf5File::read(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw FileError(path, "does not exist");
   recover(path);
+  require_content(path);
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) throw FileError(path, "is no HDF5 file, or is damaged");
   return {path, id};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 namespace gotai::recording::layout {
@@ -97,7 +98,9 @@ const std::vector<Table>& step_tables() {
 void write_start(Hdf5File& file, const World& world, const SceneSource& scene,
                  const RecorderOptions& options) {
   file.write_text("/format", kFormat);
-  file.write_text("/scene/path", scene.path);
+  // Absolute: resuming may happen in another folder.
+  file.write_text("/scene/path",
+                  scene.path.empty() ? "" : std::filesystem::absolute(scene.path).string());
   file.write_text("/scene/text", scene.text);
   std::string overrides;
   for (const std::string& assignment : scene.overrides) overrides += assignment + "\n";

@@ -189,6 +189,8 @@ H5FD_t* open_file(const char* name, unsigned flags, hid_t, haddr_t) {
     close(file->fd);
     return nullptr;
   }
+  // A journal without its file belongs to one that was removed. (Otherwise recover() ran before.)
+  if ((flags & H5F_ACC_CREAT) != 0) static_cast<void>(ftruncate(file->journal, 0) == 0);
   file->end = static_cast<haddr_t>(status.st_size);
   file->stored_pages = (file->end + kPage - 1) / kPage;
   return &file.release()->base;
