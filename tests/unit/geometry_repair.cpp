@@ -145,6 +145,40 @@ TEST(Repair, CavitiesStayHollow) {
   EXPECT_NEAR(repaired(overlap).volume, 28.0, 1e-13);
 }
 
+TEST(Repair, ManyNestedPiecesTakeBoundedTime) {
+  Mesh mesh;
+  for (int i = 0; i < 300; ++i)
+    append(mesh, surface_of({.shape = "sphere", .size = 1.0 + 0.01 * i}), Vec3::Zero());
+  MeshReport counts;
+  repair(mesh, counts);
+  EXPECT_THAT(counts.warnings, Contains(HasSubstr("not checked for being inside out")));
+}
+
+/// Two boxes of which each brings its own copy of the wall between them.
+TEST(Repair, WallsBetweenTouchingPartsDisappear) {
+  Mesh mesh = surface_of({.shape = "cube"});
+  append(mesh, surface_of({.shape = "cube"}), {1, 0, 0});
+  weld(mesh);
+  EXPECT_EQ(inspect(mesh).non_manifold_edges, 5U);  // four around the wall, and its diagonal
+  const MeshReport report = repaired(mesh);
+  EXPECT_TRUE(report.closed);
+  EXPECT_EQ(report.triangles, 20U);
+  EXPECT_NEAR(report.volume, 2.0, 1e-14);
+  EXPECT_THAT(report.repairs, Contains(HasSubstr("walls without thickness")));
+}
+
+TEST(Repair, OfATwoSidedSurfaceOneSideStays) {
+  Mesh mesh = surface_of({.shape = "torus"});
+  const std::size_t triangles = mesh.triangles.size();
+  Mesh inside = mesh;
+  for (Triangle& t : inside.triangles) reverse(t);
+  append(mesh, inside, Vec3::Zero());
+  weld(mesh);
+  const MeshReport report = repaired(mesh);
+  EXPECT_EQ(report.triangles, triangles);
+  EXPECT_TRUE(report.is_solid());
+}
+
 TEST(Repair, DuplicatesAndCollapsedTriangles) {
   Mesh mesh = surface_of({.shape = "cube"});
   mesh.triangles.push_back(mesh.triangles[2]);

@@ -17,8 +17,8 @@ namespace {
 
 const std::vector<std::pair<std::string, double>>& units() {
   static const std::vector<std::pair<std::string, double>> table = {
-      {"um", 1e-6}, {"mm", 1e-3}, {"cm", 1e-2},     {"dm", 1e-1},
-      {"m", 1.0},   {"km", 1e3},  {"inch", 0.0254}, {"foot", 0.3048}};
+      {"um", 1e-6}, {"mm", 1e-3},   {"cm", 1e-2},     {"dm", 1e-1},   {"m", 1.0},
+      {"km", 1e3},  {"in", 0.0254}, {"inch", 0.0254}, {"ft", 0.3048}, {"foot", 0.3048}};
   return table;
 }
 

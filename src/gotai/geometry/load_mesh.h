@@ -29,7 +29,7 @@ struct LoadedMesh {
   MeshReport report;
 };
 
-/// "um", "mm", "cm", "dm", "m", "km", "inch", "foot".
+/// "um", "mm", "cm", "dm", "m", "km", "in", "inch", "ft", "foot".
 const std::vector<std::string>& length_unit_names();
 
 /// Metres per unit.

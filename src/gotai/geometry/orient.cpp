@@ -126,8 +126,11 @@ double winding_number(const Mesh& mesh, const Patch& patch, const Vec3& point) {
   return angle / (4.0 * std::numbers::pi);
 }
 
-bool is_inside(const Mesh& mesh, const Patch& inner, const Patch& outer) {
+/// @param work  grows by the triangles looked at
+bool is_inside(const Mesh& mesh, const Patch& inner, const Patch& outer, std::size_t& work) {
+  ++work;
   if (!outer.box.contains(inner.box)) return false;
+  work += outer.triangles.size();
   const Triangle& t = mesh.triangles[inner.triangles.front()];
   const Vec3 point = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0;
   return std::abs(winding_number(mesh, outer, point)) > 0.5;
@@ -139,20 +142,28 @@ void turn(Mesh& mesh, Patch& patch) {
   patch.volume = -patch.volume;
 }
 
+struct Turned {
+  std::size_t patches = 0;
+  std::size_t unchecked = 0;  ///< left alone, because the search for what is around them took long
+};
+
 /// Turns inside-out patches. Patches are visited from the largest to the smallest, so that those
 /// around a patch are right when it is its turn.
-/// @returns how many were turned
-std::size_t turn_outward(Mesh& mesh, std::vector<Patch>& patches) {
+Turned turn_outward(Mesh& mesh, std::vector<Patch>& patches) {
+  /// Patches in patches take time like the square of their number; this is about half a second.
+  constexpr std::size_t kMostWork = 5'000'000;
   std::ranges::stable_sort(patches, [](const Patch& a, const Patch& b) {
     return std::abs(a.volume) > std::abs(b.volume);
   });
+  std::size_t work = 0;
   std::size_t turned = 0;
   std::vector<bool> was_turned(patches.size(), false);
   for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (work > kMostWork) return {turned, patches.size() - i};
     std::size_t around = 0;
     bool around_turned = false;
     for (std::size_t j = 0; j < i; ++j)
-      if (is_inside(mesh, patches[i], patches[j])) {
+      if (is_inside(mesh, patches[i], patches[j], work)) {
         ++around;
         around_turned |= was_turned[j];
       }
@@ -163,15 +174,13 @@ std::size_t turn_outward(Mesh& mesh, std::vector<Patch>& patches) {
     was_turned[i] = true;
     ++turned;
   }
-  return turned;
+  return {turned, 0};
 }
 
 }  // namespace
 
 void orient_closed_patches(Mesh& mesh, std::vector<std::string>& repairs,
                            std::vector<std::string>& warnings) {
-  /// Testing which patch lies in which takes patches times triangles.
-  constexpr std::size_t kMostPatches = 2000;
   const Surface surface = connect(mesh.triangles);
   std::vector<std::uint8_t> state(mesh.triangles.size(), 0);
   std::vector<Patch> closed;
@@ -194,14 +203,14 @@ void orient_closed_patches(Mesh& mesh, std::vector<std::string>& repairs,
         fmt::format("{} pieces of the surface have only one side and cannot be "
                     "oriented",
                     one_sided));
-  if (closed.size() > kMostPatches) {
-    warnings.push_back(
-        fmt::format("{} closed pieces: not checked for being inside out", closed.size()));
-    return;
-  }
-  if (const std::size_t turned = turn_outward(mesh, closed); turned > 0)
+  const std::size_t pieces = closed.size();
+  const Turned turned = turn_outward(mesh, closed);
+  if (turned.patches > 0)
     repairs.push_back(
-        fmt::format("turned {} of {} closed pieces that were inside out", turned, closed.size()));
+        fmt::format("turned {} of {} closed pieces that were inside out", turned.patches, pieces));
+  if (turned.unchecked > 0)
+    warnings.push_back(fmt::format("{} of {} closed pieces were not checked for being inside out",
+                                   turned.unchecked, pieces));
 }
 
 }  // namespace gotai::geometry::detail

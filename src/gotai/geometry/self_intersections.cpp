@@ -143,6 +143,7 @@ SelfIntersections find_self_intersections(const Mesh& mesh, std::size_t most_can
     box.extend(vertices[t[2]]);
     boxes.push_back(box);
   }
+  if (most_candidates == 0) most_candidates = 1'000'000 + 40 * triangles.size();
   SelfIntersections found;
   std::size_t candidates = 0;
   const Tree tree(std::move(boxes));

@@ -18,8 +18,8 @@ struct SelfIntersections {
 /// share. Every decision is exact (the signs of determinants are computed without rounding error);
 /// triangles without area are left out. Bounding volume hierarchy, O(n log n + candidates).
 /// Expects finite vertices and indices in range.
-/// @param most_candidates  pairs with overlapping boxes that are looked at before giving up
-SelfIntersections find_self_intersections(const Mesh& mesh,
-                                          std::size_t most_candidates = 50'000'000);
+/// @param most_candidates  pairs with overlapping boxes that are looked at before giving up; 0 is
+///        a million and 40 per triangle (ordinary meshes have about 10)
+SelfIntersections find_self_intersections(const Mesh& mesh, std::size_t most_candidates = 0);
 
 }  // namespace gotai::geometry

@@ -44,13 +44,15 @@ bool blocks(const Vec2& p, const Vec2& a, const Vec2& b, const Vec2& c) {
 
 /// How good an ear is: twice its area over its longest edge squared; <= 0 for none.
 double quality(const std::vector<Vec2>& flat, const std::vector<std::uint32_t>& ring,
-               std::size_t at) {
+               std::size_t at, std::size_t& budget) {
   const std::size_t n = ring.size();
   const Vec2& a = flat[ring[(at + n - 1) % n]];
   const Vec2& b = flat[ring[at]];
   const Vec2& c = flat[ring[(at + 1) % n]];
   const double area = cross(a, b, c);
   if (!(area > 0.0)) return area;
+  if (budget < n) return 0.0;
+  budget -= n;
   for (const std::uint32_t other : ring)
     if (blocks(flat[other], a, b, c)) return 0.0;
   return area / std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
@@ -60,11 +62,13 @@ constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 /// The best ear; kNone where a self-crossing or flat polygon has none. Large polygons take the
 /// first one, so that the time stays quadratic.
-std::size_t best_ear(const std::vector<Vec2>& flat, const std::vector<std::uint32_t>& ring) {
+/// @param budget  corners that may still be looked at; without it there is no ear
+std::size_t best_ear(const std::vector<Vec2>& flat, const std::vector<std::uint32_t>& ring,
+                     std::size_t& budget) {
   std::size_t best = kNone;
   double best_quality = 0.0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    const double q = quality(flat, ring, i);
+    const double q = quality(flat, ring, i, budget);
     if (!(q > best_quality)) continue;
     best = i;
     best_quality = q;
@@ -89,8 +93,10 @@ void triangulate(const std::vector<Vec3>& vertices, std::span<const std::uint32_
   const std::vector<Vec2> flat = flatten(vertices, distinct);
   std::vector<std::uint32_t> ring(distinct.size());
   for (std::uint32_t i = 0; i < ring.size(); ++i) ring[i] = i;
-  for (std::size_t ear = best_ear(flat, ring); ring.size() > 3 && ear != kNone;
-       ear = best_ear(flat, ring)) {
+  // Polygons made to have one ear, always the last one looked at, would take cubic time.
+  std::size_t budget = 64 * ring.size() * ring.size();
+  for (std::size_t ear = best_ear(flat, ring, budget); ring.size() > 3 && ear != kNone;
+       ear = best_ear(flat, ring, budget)) {
     const std::size_t n = ring.size();
     triangles.push_back(
         {distinct[ring[(ear + n - 1) % n]], distinct[ring[ear]], distinct[ring[(ear + 1) % n]]});
