@@ -9,6 +9,7 @@
 #include "gotai/core/random.h"
 #include "gotai/geometry/generate.h"
 #include "gotai/voxel/inside.h"
+#include "gotai/voxel/inside_soup.h"
 
 namespace gotai::voxel {
 namespace {
@@ -194,10 +195,9 @@ TEST(Shape, RefusesWhatIsNoBody) {
   for (const int level : {-1, 0, kMaxLevel + 1})
     EXPECT_THAT([&] { make_shape("cube", cube, {.prepared_level = level}); },
                 ThrowsMessage<InvalidArgument>(HasSubstr("must be 1..9")));
-  Mesh open = without_tetrahedra(cube);
-  open.triangles.pop_back();
-  EXPECT_THAT([&] { make_shape("open", open, {}); },
-              ThrowsMessage<InvalidArgument>(HasSubstr("not closed")));
+  for (const double thickness : {-1.0, std::nan(""), HUGE_VAL})
+    EXPECT_THAT([&] { make_shape("cube", cube, {.thickness = thickness}); },
+                ThrowsMessage<InvalidArgument>(HasSubstr("must be 0 (none) or positive")));
   Mesh bad = cube;
   bad.tetrahedra[2][1] = 1000;
   EXPECT_THAT([&] { make_shape("bad", bad, {}); },
@@ -207,6 +207,151 @@ TEST(Shape, RefusesWhatIsNoBody) {
   EXPECT_THAT([&] { make_shape("bad", bad, {}); },
               ThrowsMessage<InvalidArgument>(HasSubstr("vertex 3")));
   EXPECT_THROW(make_shape("empty", Mesh(), {}), InvalidArgument);
+}
+
+Mesh generated(const std::string& shape, int subdivisions) {
+  GeneratorOptions options;
+  options.shape = shape;
+  options.subdivisions = subdivisions;
+  return without_tetrahedra(geometry::generate(options));
+}
+
+/// The triangles whose centre is below a height.
+Mesh below(const Mesh& mesh, double height) {
+  Mesh result;
+  result.vertices = mesh.vertices;
+  for (const geometry::Triangle& t : mesh.triangles)
+    if ((mesh.vertices[t[0]].z() + mesh.vertices[t[1]].z() + mesh.vertices[t[2]].z()) / 3.0 <
+        height)
+      result.triangles.push_back(t);
+  return result;
+}
+
+TEST(ImperfectShape, MassComesFromTheVoxelsWithItsError) {
+  const Mesh rock = generated("rock", 4);
+  const Shape exact = make_shape("rock", rock, {});
+  EXPECT_EQ(exact.volume_error, 0.0);
+  EXPECT_TRUE(exact.warnings.empty());
+  Mesh damaged = rock;
+  for (std::size_t t = 0; t < damaged.triangles.size(); t += 9)
+    std::swap(damaged.triangles[t][0], damaged.triangles[t][1]);
+  for (std::size_t t = 100; t < 130; ++t) damaged.triangles.pop_back();
+  const Shape shape = make_shape("rock", damaged, {});
+  EXPECT_GT(shape.volume_error, 0.0);
+  EXPECT_LT(shape.volume_error, 0.05);
+  EXPECT_THAT(shape.warnings, testing::Contains(HasSubstr("not closed")));
+  EXPECT_THAT(shape.warnings, testing::Contains(HasSubstr("faced the wrong way")));
+  EXPECT_THAT(shape.warnings, testing::Contains(HasSubstr("counted in voxels of level 7")));
+  // Far better than the stated bound: the errors of the surface voxels cancel.
+  EXPECT_NEAR(shape.mass.volume, exact.mass.volume, 0.005 * exact.mass.volume);
+  EXPECT_LT((shape.mass.center_of_mass - exact.mass.center_of_mass).norm(), 0.003);
+  EXPECT_LT((shape.mass.inertia - exact.mass.inertia).norm(), 0.01 * exact.mass.inertia.norm());
+}
+
+TEST(ImperfectShape, VoxelMassOfABoxIsExact) {
+  const VoxelGrid grid{Vec3(10.0, -3.0, 2.0), 4.0};
+  VoxelSet block(5);  // 3 x 2 x 1 m
+  for (int iz = 0; iz < 4; ++iz)
+    for (int iy = 0; iy < 8; ++iy) block.insert_run(2, 13, iy, iz);
+  const geometry::MassProperties mass = voxel_mass(block, grid);
+  EXPECT_DOUBLE_EQ(mass.volume, 6.0);
+  EXPECT_LT((mass.center_of_mass - Vec3(12.0, -2.0, 2.5)).norm(), 1e-13);
+  const Vec3 inertia(6.0 / 12 * (4 + 1), 6.0 / 12 * (9 + 1), 6.0 / 12 * (9 + 4));
+  EXPECT_LT((mass.inertia - Mat3(inertia.asDiagonal())).norm(), 1e-12);
+}
+
+TEST(ImperfectShape, DistanceFieldHasTheSignOfTheSolid) {
+  Mesh damaged = generated("sphere", 12);
+  for (std::size_t t = 0; t < damaged.triangles.size(); t += 7)
+    std::swap(damaged.triangles[t][0], damaged.triangles[t][1]);
+  std::erase_if(damaged.triangles,
+                [&](const geometry::Triangle& t) { return damaged.vertices[t[0]].z() > 0.45; });
+  const Shape shape = make_shape("ball", damaged, {.prepared_level = 6, .surface_level = 5});
+  Random random(5);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 x = 0.6 * random.uniform() * random.unit_vector();
+    if (std::abs(x.norm() - 0.5) < 0.03 || x.z() > 0.4) continue;
+    EXPECT_EQ(evaluate(shape.surface.field, x - shape.surface.center).distance < 0.0,
+              x.norm() < 0.5)
+        << x.transpose();
+  }
+}
+
+TEST(ImperfectShape, OverlappingPartsCountOnce) {
+  const Mesh cube = without_tetrahedra(box(Vec3::Ones()));
+  const Mesh two = joined(cube, moved(cube, Quat::Identity(), Vec3(0.5, 0.0, 0.0)));
+  const Shape shape = make_shape("two", two, {.prepared_level = 6});
+  EXPECT_THAT(shape.warnings, testing::Contains(HasSubstr("overlap")));
+  EXPECT_NEAR(shape.mass.volume, 1.5, 0.1);
+  // Parts that only touch are exact.
+  const Mesh beside = joined(cube, moved(cube, Quat::Identity(), Vec3(1.0, 0.0, 0.0)));
+  EXPECT_EQ(make_shape("beside", beside, {.prepared_level = 6}).volume_error, 0.0);
+}
+
+TEST(ImperfectShape, DoubledFacesCountOnce) {
+  const Mesh cube = without_tetrahedra(box(Vec3::Ones()));
+  for (const Mesh& copy : {cube, inside_out(cube)}) {
+    Mesh doubled = cube;
+    doubled.triangles.insert(doubled.triangles.end(), copy.triangles.begin(), copy.triangles.end());
+    const Shape shape = make_shape("doubled", doubled, {.prepared_level = 5});
+    EXPECT_NEAR(shape.mass.volume, 1.0, 0.01);
+    EXPECT_FALSE(shape.warnings.empty());
+  }
+}
+
+TEST(ImperfectShape, InsideOutIsTurned) {
+  const Mesh cube = inside_out(without_tetrahedra(box(Vec3::Ones())));
+  const Shape shape = make_shape("cube", cube, {.prepared_level = 5});
+  EXPECT_DOUBLE_EQ(shape.mass.volume, 1.0);
+  EXPECT_EQ(shape.volume_error, 0.0);
+}
+
+TEST(ImperfectShape, OpenSurfacesAreRefusedUnlessTheyGetAThickness) {
+  const Mesh ball = generated("sphere", 16);
+  const Mesh bucket = below(generated("cylinder", 16), 0.49);
+  Mesh sheet;
+  sheet.vertices = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  Mesh two_sided = sheet;
+  two_sided.triangles.push_back({0, 2, 1});
+  two_sided.triangles.push_back({0, 3, 2});
+  for (const Mesh& open : {sheet, two_sided, bucket, below(ball, 0.0)}) {
+    EXPECT_THAT([&] { make_shape("open", open, {}); },
+                ThrowsMessage<InvalidArgument>(HasSubstr("give the thickness of the sheet")));
+    const Shape shape = make_shape("open", open, {.thickness = 0.05});
+    EXPECT_EQ(shape.volume_error, 0.0);
+    EXPECT_TRUE(has_closed_surface(shape.mesh));
+  }
+  EXPECT_DOUBLE_EQ(make_shape("sheet", sheet, {.thickness = 0.05}).mass.volume, 0.05);
+  // A ball's surface becomes a shell: 4 pi r^2 t and a little more.
+  const double shell = make_shape("shell", ball, {.thickness = 0.05}).mass.volume;
+  EXPECT_NEAR(shell, M_PI * 0.05, 0.01 * M_PI * 0.05);
+  // A small opening does not make a sheet of it.
+  EXPECT_NO_THROW(make_shape("ball", below(ball, 0.45), {}));
+}
+
+TEST(ImperfectShape, OneSidedSheetsGetAThicknessToo) {
+  Mesh moebius;
+  const int n = 60;
+  for (int i = 0; i < n; ++i) {
+    const double angle = 2.0 * M_PI * i / n;
+    const Vec3 ring(std::cos(angle), std::sin(angle), 0.0);
+    const Vec3 across = std::cos(0.5 * angle) * ring + std::sin(0.5 * angle) * Vec3::UnitZ();
+    moebius.vertices.push_back(ring - 0.3 * across);
+    moebius.vertices.push_back(ring + 0.3 * across);
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t a = 2 * i;
+    const bool last = i + 1 == n;
+    const std::uint32_t b = last ? 1 : a + 2;
+    const std::uint32_t c = last ? 0 : a + 3;
+    moebius.triangles.push_back({a, a + 1, c});
+    moebius.triangles.push_back({a, c, b});
+  }
+  EXPECT_THROW(make_shape("moebius", moebius, {}), InvalidArgument);
+  const Shape shape = make_shape("moebius", moebius, {.thickness = 0.1});
+  EXPECT_TRUE(has_closed_surface(shape.mesh));
+  EXPECT_NEAR(shape.mass.volume, 2.0 * M_PI * 0.6 * 0.1, 0.1 * 2.0 * M_PI * 0.6 * 0.1);
 }
 
 }  // namespace

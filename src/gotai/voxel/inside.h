@@ -2,6 +2,8 @@
 /// In-out tests: the voxels whose centre is in a body.
 #pragma once
 
+#include <cstdint>
+
 #include "gotai/geometry/mesh.h"
 #include "gotai/voxel/pyramid.h"
 #include "gotai/voxel/voxel_set.h"
@@ -24,6 +26,10 @@ VoxelSet voxels_in_tetrahedra(const geometry::Mesh& mesh, const VoxelGrid& grid,
 /// @param mesh   with a surface for which has_closed_surface(mesh); its tetrahedra are not read
 /// @param level  1..kMaxLevel
 VoxelSet voxels_in_closed_surface(const geometry::Mesh& mesh, const VoxelGrid& grid, int level);
+
+/// How many of voxels_in_closed_surface the surface encloses more than once: where parts overlap.
+std::uint64_t count_overlapping_voxels(const geometry::Mesh& mesh, const VoxelGrid& grid,
+                                       int level);
 
 /// Whether every edge is passed equally often in both directions (vertices at equal positions are
 /// one): then every point has a whole winding number. False without triangles.

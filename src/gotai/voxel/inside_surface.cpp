@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <numeric>
 
 #include "gotai/core/parallel.h"
 #include "gotai/voxel/center_lines.h"
@@ -58,13 +60,15 @@ class WindingSlab {
       }
   }
 
-  void insert_inside(VoxelSet& inside) const {
+  /// Calls visit(ix, iy, winding number) for every voxel that the surface winds around.
+  template <typename Visit>
+  void for_each_inside(const Visit& visit) const {
     for (int iy = 0; iy < lines_.side(); ++iy) {
       const std::int32_t* step = step_.data() + static_cast<std::size_t>(iy) * stride_;
       std::int32_t winding = 0;
       for (int ix = 0; ix < lines_.side(); ++ix) {
         winding += step[ix];
-        if (winding != 0) inside.insert(ix, iy, iz_);
+        if (winding != 0) visit(ix, iy, winding);
       }
     }
   }
@@ -91,6 +95,29 @@ class WindingSlab {
   std::vector<std::int32_t> step_;  ///< winding number minus that of the voxel before, per (iy, ix)
   std::vector<GridRun> runs_;
 };
+
+/// Calls use(slab, iz) for every slab of voxels, in any order and on any thread. Sums of integers
+/// do not depend on the order of the triangles.
+template <typename Use>
+void wind_slabs(const geometry::Mesh& mesh, const CenterLines& lines, const Use& use) {
+  std::vector<std::array<Vec3, 3>> triangles;
+  std::vector<IndexRange> slabs;
+  triangles.reserve(mesh.triangles.size());
+  slabs.reserve(mesh.triangles.size());
+  for (const geometry::Triangle& t : mesh.triangles) {
+    triangles.push_back(corners_of(mesh, t));
+    const auto [low, high] =
+        std::minmax({triangles.back()[0].z(), triangles.back()[1].z(), triangles.back()[2].z()});
+    slabs.push_back(indices_within(lines.centers[2], low, high));
+  }
+  parallel_for(static_cast<std::size_t>(lines.side()), 4, [&](std::size_t slab) {
+    const int iz = static_cast<int>(slab);
+    WindingSlab winding(lines, iz);
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      if (slabs[t].first <= iz && iz < slabs[t].last) winding.add(triangles[t]);
+    use(winding, iz);
+  });
+}
 
 /// The voxels whose centre is exactly on a triangle.
 void find_centers_on(const std::array<Vec3, 3>& corners, const CenterLines& lines,
@@ -145,26 +172,24 @@ void insert_centers_on_surface(const geometry::Mesh& mesh, const CenterLines& li
 VoxelSet voxels_in_closed_surface(const geometry::Mesh& mesh, const VoxelGrid& grid, int level) {
   VoxelSet inside(level);
   const CenterLines lines(grid, level);
-  std::vector<std::array<Vec3, 3>> triangles;
-  std::vector<IndexRange> slabs;
-  triangles.reserve(mesh.triangles.size());
-  slabs.reserve(mesh.triangles.size());
-  for (const geometry::Triangle& t : mesh.triangles) {
-    triangles.push_back(corners_of(mesh, t));
-    const auto [low, high] =
-        std::minmax({triangles.back()[0].z(), triangles.back()[1].z(), triangles.back()[2].z()});
-    slabs.push_back(indices_within(lines.centers[2], low, high));
-  }
-  // Every slab of rows is written by one thread; sums of integers do not depend on the order.
-  parallel_for(static_cast<std::size_t>(inside.side()), 4, [&](std::size_t slab) {
-    const int iz = static_cast<int>(slab);
-    WindingSlab winding(lines, iz);
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-      if (slabs[t].first <= iz && iz < slabs[t].last) winding.add(triangles[t]);
-    winding.insert_inside(inside);
+  // Every slab of rows is written by one thread.
+  wind_slabs(mesh, lines, [&](const WindingSlab& slab, int iz) {
+    slab.for_each_inside([&](int ix, int iy, std::int32_t) { inside.insert(ix, iy, iz); });
   });
   insert_centers_on_surface(mesh, lines, inside);
   return inside;
+}
+
+std::uint64_t count_overlapping_voxels(const geometry::Mesh& mesh, const VoxelGrid& grid,
+                                       int level) {
+  const CenterLines lines(grid, level);
+  std::vector<std::uint64_t> count(static_cast<std::size_t>(lines.side()), 0);
+  wind_slabs(mesh, lines, [&](const WindingSlab& slab, int iz) {
+    slab.for_each_inside([&](int, int, std::int32_t winding) {
+      if (std::abs(winding) > 1) ++count[static_cast<std::size_t>(iz)];
+    });
+  });
+  return std::accumulate(count.begin(), count.end(), std::uint64_t{0});
 }
 
 bool has_closed_surface(const geometry::Mesh& mesh) {

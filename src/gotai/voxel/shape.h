@@ -17,15 +17,24 @@ struct ShapeOptions {
   int prepared_level = 7;  ///< M, the finest level of the pyramid, 1..kMaxLevel
   /// Level of the surface model, kMinSurfaceLevel..kMaxSurfaceLevel; 0: prepared without one.
   int surface_level = 0;
+  /// Thickness that makes a solid of an open sheet (or a hollow shell of a closed surface) [m];
+  /// 0: the surface encloses the body.
+  double thickness = 0.0;
 };
 
 /// A prepared shape. Immutable and shared between bodies. Lengths in metres, mesh frame M.
 struct Shape {
   std::string name;
-  geometry::Mesh mesh;            ///< polygons for drawing, and the tetrahedra when there are any
+  /// Polygons for drawing, and the tetrahedra when there are any. Re-oriented when the surface was
+  /// not closed; the walls of the sheet when a thickness was asked for.
+  geometry::Mesh mesh;
   geometry::MassProperties mass;  ///< at density 1
+  /// Bound of the relative error of mass.volume: 0 where it is integrated exactly, half of the
+  /// surface voxels where it is counted in voxels.
+  double volume_error = 0.0;
+  std::vector<std::string> warnings;  ///< what was assumed about the surface, one sentence each
   Pyramid pyramid;
-  SurfaceModel surface;  ///< for the collision model `surface`; empty unless asked for
+  SurfaceModel surface;          ///< for the collision model `surface`; empty unless asked for
   double bounding_radius = 0.0;  ///< farthest vertex from the centre of mass [m]
   /// Farthest surface of any voxel sphere from the centre of mass, per level (index h - 1) [m]:
   /// rho of the corrected time step (erratum 29).
@@ -38,10 +47,15 @@ struct Shape {
 Hash128 content_hash(const geometry::Mesh& mesh, const ShapeOptions& options);
 
 /// Prepares a shape: mass properties, the voxel pyramid and, if asked for, the surface model.
-/// @param mesh  its tetrahedra define the body when there are any, else its closed surface does
-/// @throws InvalidArgument for a bad level, a vertex index out of range, a surface without
-///   tetrahedra that is not closed, no volume, or a body so thin that no voxel's centre is inside
-///   (the message names the level that would do)
+///
+/// The body is what the tetrahedra fill, else what the surface encloses. A surface with holes,
+/// flipped triangles or doubled faces is re-oriented (see orient_soup) and encloses the points with
+/// a generalised winding number above 1/2; its mass, and that of closed surfaces whose parts
+/// overlap, is counted in voxels. All of that is said in warnings.
+/// @param mesh  with consistent indices
+/// @throws InvalidArgument for a bad level or thickness, a vertex index out of range, a sheet or a
+///   surface too open to enclose a body (unless a thickness is given), no volume, or a body so thin
+///   that no voxel's centre is inside (the message names the level that would do)
 Shape make_shape(std::string name, geometry::Mesh mesh, const ShapeOptions& options);
 
 /// Sets bounding_radius and voxel_bounding_radius from mesh, mass and pyramid.

@@ -20,7 +20,7 @@ namespace gotai::voxel {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'G', 'O', 'T', 'A', 'I', 'S', 'H', 'P'};
-constexpr std::uint32_t kFormatVersion = 2;
+constexpr std::uint32_t kFormatVersion = 3;
 
 struct Header {
   std::array<char, 8> magic = kMagic;
@@ -67,6 +67,13 @@ geometry::MassProperties decode_mass(ByteReader& in) {
   return mass;
 }
 
+std::vector<std::string> decode_warnings(ByteReader& in) {
+  std::vector<std::string> warnings;
+  // Every text takes at least its length, so that a false count ends with the bytes.
+  for (auto left = in.value<std::uint64_t>(); left > 0; --left) warnings.push_back(in.text());
+  return warnings;
+}
+
 Pyramid decode_pyramid(ByteReader& in, int max_level) {
   VoxelGrid grid;
   grid.origin = in.value<Vec3>();
@@ -107,13 +114,15 @@ std::vector<std::byte> encode_shape(const Shape& shape) {
   out.text(shape.name);
   out.value(static_cast<std::int32_t>(shape.pyramid.max_level()));
   out.value(shape.content);
-  out.value(static_cast<std::int32_t>(shape.surface.level));
   out.array(shape.mesh.vertices);
   out.array(shape.mesh.triangles);
   out.array(shape.mesh.tetrahedra);
   out.value(shape.mass.volume);
   out.value(shape.mass.center_of_mass);
   out.value(shape.mass.inertia);
+  out.value(shape.volume_error);
+  out.value(static_cast<std::uint64_t>(shape.warnings.size()));
+  for (const std::string& warning : shape.warnings) out.text(warning);
   out.value(shape.pyramid.grid.origin);
   out.value(shape.pyramid.grid.edge);
   out.array(shape.pyramid.levels.back().index);
@@ -125,20 +134,16 @@ Shape decode_shape(std::span<const std::byte> payload, const std::string& path) 
   ByteReader in(payload, path);
   Shape shape;
   shape.name = in.text();
-  ShapeOptions options;
-  options.prepared_level = in.value<std::int32_t>();
-  if (options.prepared_level < 1 || options.prepared_level > kMaxLevel)
-    in.fail(fmt::format("is damaged: level {}, must be 1..{}", options.prepared_level, kMaxLevel));
+  const auto max_level = in.value<std::int32_t>();
+  if (max_level < 1 || max_level > kMaxLevel)
+    in.fail(fmt::format("is damaged: level {}, must be 1..{}", max_level, kMaxLevel));
   shape.content = in.value<Hash128>();
-  options.surface_level = in.value<std::int32_t>();
   shape.mesh = decode_mesh(in);
-  if (shape.content != content_hash(shape.mesh, options))
-    in.fail("was prepared by another version of Gotai; prepare it again from its mesh");
   shape.mass = decode_mass(in);
-  shape.pyramid = decode_pyramid(in, options.prepared_level);
+  shape.volume_error = in.value<double>();
+  shape.warnings = decode_warnings(in);
+  shape.pyramid = decode_pyramid(in, max_level);
   shape.surface = decode_surface(in);
-  if (shape.surface.level != options.surface_level)
-    in.fail("is damaged: the surface model has another level than announced");
   if (in.remaining() > 0) in.fail("is damaged: it goes on after its end");
   derive_radii(shape);
   return shape;

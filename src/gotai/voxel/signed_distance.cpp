@@ -64,7 +64,8 @@ bool less_position(const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-SignedDistance::SignedDistance(const geometry::Mesh& mesh) {
+SignedDistance::SignedDistance(const geometry::Mesh& mesh, const WindingTree* inside)
+    : inside_(inside) {
   merge_vertices(mesh);
   find_normals();
   find_neighbors();
@@ -249,7 +250,8 @@ ClosestPoint SignedDistance::query(const Vec3& x, double limit, std::uint32_t hi
   }
   if (feature < 0) return result;
   result.pseudonormal = pseudonormal(result.triangle, feature);
-  const bool inside = (x - result.point).dot(result.pseudonormal) < 0.0;
+  const bool inside = inside_ != nullptr ? inside_->winding_number(x) > 0.5
+                                         : (x - result.point).dot(result.pseudonormal) < 0.0;
   result.distance = inside ? -std::sqrt(best) : std::sqrt(best);
   return result;
 }

@@ -10,6 +10,7 @@
 
 #include "gotai/core/types.h"
 #include "gotai/geometry/mesh.h"
+#include "gotai/voxel/winding_tree.h"
 
 namespace gotai::voxel {
 
@@ -27,8 +28,10 @@ struct ClosestPoint {
 /// surfaces. Vertices at equal positions count as one. Triangles without area are ignored.
 class SignedDistance {
  public:
+  /// @param inside  decides the sign (more than half a turn is inside) for surfaces that are not
+  ///                closed or whose parts overlap; must outlive this. Null: pseudonormals do.
   /// @throws InvalidArgument when no triangle has an area
-  explicit SignedDistance(const geometry::Mesh& mesh);
+  explicit SignedDistance(const geometry::Mesh& mesh, const WindingTree* inside = nullptr);
 
   /// @param x            query point [m], mesh frame
   /// @param limit  surfaces farther than this are not found: the distance is infinite then [m]
@@ -66,6 +69,7 @@ class SignedDistance {
   std::uint32_t build_node(std::vector<Vec3>& centers, std::uint32_t begin, std::uint32_t end);
   Vec3 pseudonormal(std::uint32_t triangle, int feature) const;
 
+  const WindingTree* inside_;
   std::vector<Vec3> vertices_;
   std::vector<geometry::Triangle> triangles_;
   std::vector<Vec3> face_normal_;

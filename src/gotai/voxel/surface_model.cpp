@@ -7,13 +7,13 @@
 
 namespace gotai::voxel {
 
-SurfaceModel make_surface_model(const geometry::Mesh& mesh, int level) {
+SurfaceModel make_surface_model(const geometry::Mesh& mesh, int level, const WindingTree* inside) {
   if (level < kMinSurfaceLevel || level > kMaxSurfaceLevel) {
     throw InvalidArgument(
         "shape.surface_level", std::to_string(level),
         "must be " + std::to_string(kMinSurfaceLevel) + ".." + std::to_string(kMaxSurfaceLevel));
   }
-  const SignedDistance surface(mesh);
+  const SignedDistance surface(mesh, inside);
   Box3 box;
   for (std::uint32_t v = 0; v < surface.vertex_count(); ++v) box.extend(surface.vertex(v));
   SurfaceModel model;

@@ -11,6 +11,7 @@
 #include "gotai/geometry/mesh.h"
 #include "gotai/voxel/distance_field.h"
 #include "gotai/voxel/surface_samples.h"
+#include "gotai/voxel/winding_tree.h"
 
 namespace gotai::voxel {
 
@@ -65,10 +66,13 @@ struct SurfaceModel {
 inline constexpr int kMinSurfaceLevel = 3;
 inline constexpr int kMaxSurfaceLevel = 8;
 
-/// Prepares the surface model of a closed mesh.
-/// @param level  kMinSurfaceLevel..kMaxSurfaceLevel
+/// Prepares the surface model of a mesh.
+/// @param level   kMinSurfaceLevel..kMaxSurfaceLevel
+/// @param inside  the mesh's winding numbers where the surface is not closed or parts overlap;
+///                null for closed surfaces
 /// @throws InvalidArgument for a level out of range or a mesh without area
-SurfaceModel make_surface_model(const geometry::Mesh& mesh, int level);
+SurfaceModel make_surface_model(const geometry::Mesh& mesh, int level,
+                                const WindingTree* inside = nullptr);
 
 /// Orders samples for the tree and bounds its nodes.
 /// @param center  origin of frame S [m], mesh frame
