@@ -1,0 +1,216 @@
+#include "gotai/view/live_server.h"
+
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "gotai/core/error.h"
+#include "gotai/view/live_frames.h"
+#include "gotai/view/page.h"
+#include "gotai/view/run_header.h"
+
+namespace gotai::view {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// May the simulation go on?
+class Gate {
+ public:
+  void pause() { set(true, 0); }
+  void resume() { set(false, 0); }
+  /// Lets one step through and stays closed.
+  void step() { set(true, 1); }
+
+  void wait(const std::function<bool()>& stop) {
+    std::unique_lock lock(mutex_);
+    while (paused_ && steps_ == 0) {
+      if (stop()) return;
+      changed_.wait_for(lock, milliseconds(100));
+    }
+    if (steps_ > 0) --steps_;
+  }
+
+ private:
+  void set(bool paused, int steps) {
+    {
+      const std::scoped_lock lock(mutex_);
+      paused_ = paused;
+      steps_ += steps;
+    }
+    changed_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool paused_ = false;
+  int steps_ = 0;
+};
+
+std::vector<std::uint8_t> scene_of(const World& world, const std::string& title,
+                                   const std::string& generator) {
+  RunView run = describe(world);
+  run.title = title;
+  run.generator = generator;
+  ContainerWriter container;
+  std::vector<std::string> notes;
+  nlohmann::json header = write_run_header(run, container, notes);
+  header["live"] = true;
+  header["notes"] = notes;
+  return container.finish(std::move(header));
+}
+
+}  // namespace
+
+struct LiveServer::State {
+  httplib::Server server;
+  std::thread thread;
+  int port = 0;
+  std::string page;
+  std::vector<std::uint8_t> scene;
+  LiveFrames frames;
+  Gate gate;
+  std::atomic<int> viewers{0};
+  std::atomic<bool> stopping{false};
+
+  double frame_time = 0.0;  // simulated time between frames [s]
+  double next_frame = 0.0;
+  std::vector<model::StepReport> steps;  // since the last frame
+
+  bool is_own(const httplib::Request& request) const;
+  void route();
+  void send_events(httplib::Response& response);
+};
+
+/// Refuses what another site's page asks for, also when its name has been made to lead here.
+bool LiveServer::State::is_own(const httplib::Request& request) const {
+  const auto names_us = [this](const std::string& host) {
+    return host == fmt::format("127.0.0.1:{}", port) || host == fmt::format("localhost:{}", port);
+  };
+  if (!names_us(request.get_header_value("Host"))) return false;
+  if (request.has_header("Origin")) {
+    const std::string origin = request.get_header_value("Origin");
+    if (!origin.starts_with("http://") || !names_us(origin.substr(7))) return false;
+  }
+  const std::string site = request.get_header_value("Sec-Fetch-Site");
+  return site.empty() || site == "same-origin" || site == "none";
+}
+
+void LiveServer::State::route() {
+  server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& out) {
+    if (is_own(request)) return httplib::Server::HandlerResponse::Unhandled;
+    out.status = 403;
+    out.set_content("This simulation is shown to its own page only.\n", "text/plain");
+    return httplib::Server::HandlerResponse::Handled;
+  });
+  server.set_default_headers(
+      {{"Cache-Control", "no-store"}, {"X-Content-Type-Options", "nosniff"}});
+  server.Get("/", [this](const httplib::Request&, httplib::Response& out) {
+    out.set_content(page, "text/html; charset=utf-8");
+  });
+  server.Get("/scene", [this](const httplib::Request&, httplib::Response& out) {
+    out.set_content(reinterpret_cast<const char*>(scene.data()), scene.size(),
+                    "application/octet-stream");
+  });
+  server.Get("/events",
+             [this](const httplib::Request&, httplib::Response& out) { send_events(out); });
+  const auto command = [this](const char* path, void (Gate::*action)()) {
+    server.Post(path, [this, action](const httplib::Request&, httplib::Response& out) {
+      (gate.*action)();
+      out.status = 204;
+    });
+  };
+  command("/pause", &Gate::pause);
+  command("/resume", &Gate::resume);
+  command("/step", &Gate::step);
+}
+
+/// Server-sent events: one "frame" each, and "end".
+void LiveServer::State::send_events(httplib::Response& response) {
+  ++viewers;
+  response.set_chunked_content_provider(
+      "text/event-stream",
+      [this, number = std::uint64_t{0}](std::size_t, httplib::DataSink& sink) mutable {
+        if (stopping) return false;
+        bool closed = false;
+        const auto next = frames.next(number, milliseconds(500), closed);
+        std::string text;
+        if (next) {
+          number = next->number + 1;
+          text = "event: frame\ndata: " + encode(*next->frame) + "\n\n";
+        } else {
+          // A comment shows whether the viewer is still there.
+          text = closed ? "event: end\ndata: end\n\n" : ": waiting\n\n";
+        }
+        const bool sent = sink.write(text.data(), text.size());
+        if (sent && closed && !next) sink.done();
+        return sent;
+      },
+      [this](bool) { --viewers; });
+}
+
+LiveServer::LiveServer(const World& world, const std::string& title, const std::string& generator,
+                       const Options& options)
+    : state_(std::make_unique<State>()) {
+  State& state = *state_;
+  state.page = live_page();
+  state.scene = scene_of(world, title, generator);
+  state.frame_time = 1.0 / options.fps;
+  state.next_frame = world.time() + state.frame_time;
+  state.frames.push({capture(world), {}});
+  state.route();
+  // Whole frames at once: waiting for more to send would only delay them.
+  state.server.set_tcp_nodelay(true);
+  // By default the library shares a port with other programs.
+  state.server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+  });
+  state.server.set_keep_alive_timeout(1);  // [s]; the end of the run waits for it
+  if (options.port == 0)
+    state.port = state.server.bind_to_any_port("127.0.0.1");
+  else if (state.server.bind_to_port("127.0.0.1", options.port))
+    state.port = options.port;
+  if (state.port <= 0)
+    throw Error(options.port == 0
+                    ? "the live view found no free port on this machine"
+                    : fmt::format("the live view cannot use port {}: it is taken", options.port));
+  state.thread = std::thread([&state] { state.server.listen_after_bind(); });
+  while (!state.server.is_running()) std::this_thread::sleep_for(milliseconds(1));
+}
+
+LiveServer::~LiveServer() { finish(0.0); }
+
+int LiveServer::port() const { return state_->port; }
+std::string LiveServer::address() const { return fmt::format("http://127.0.0.1:{}/", port()); }
+
+void LiveServer::on_step(const World& world, const model::StepReport& report) {
+  State& state = *state_;
+  state.steps.push_back(report);
+  if (world.time() < state.next_frame - 1e-9) return;
+  state.next_frame += state.frame_time;
+  // Steps longer than a frame's time: the next frame is the next step.
+  state.next_frame = std::max(state.next_frame, world.time());
+  state.frames.push({capture(world), std::exchange(state.steps, {})});
+}
+
+void LiveServer::wait_while_paused(const std::function<bool()>& stop) { state_->gate.wait(stop); }
+
+void LiveServer::finish(double seconds) {
+  State& state = *state_;
+  if (!state.thread.joinable()) return;
+  state.frames.close();
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (state.viewers > 0 && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(milliseconds(10));
+  state.stopping = true;
+  state.server.stop();
+  state.thread.join();
+}
+
+}  // namespace gotai::view

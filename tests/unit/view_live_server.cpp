@@ -1,0 +1,169 @@
+#include "gotai/view/live_server.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <httplib.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "gotai/core/error.h"
+#include "gotai/geometry/generate.h"
+#include "gotai/view/live_frames.h"
+#include "gotai/view/page.h"
+
+namespace gotai::view {
+namespace {
+
+std::unique_ptr<World> falling_cube() {
+  model::Settings settings;
+  settings.collision.level = 3;
+  settings.time.step = 0.01;
+  auto world = std::make_unique<World>(settings);
+  world->add_shape(std::make_shared<const voxel::Shape>(
+      voxel::make_shape("cube", geometry::generate({}), {.prepared_level = 3})));
+  BodyDescription body;
+  body.X_WM.p = Vec3(0.0, 0.0, 5.0);
+  world->add_body(body);
+  return world;
+}
+
+class Live : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (page_template().empty()) GTEST_SKIP() << "built without the viewer";
+    world = falling_cube();
+    server = std::make_unique<LiveServer>(*world, "cube", "test", LiveServer::Options{});
+  }
+  httplib::Client client() const {
+    httplib::Client out("127.0.0.1", server->port());
+    out.set_read_timeout(20);
+    return out;
+  }
+  /// Steps until told to stop, as `gotai run --live` does.
+  void run(int steps) {
+    for (int i = 0; i < steps && !stop; ++i) {
+      server->wait_while_paused([this] { return stop.load(); });
+      server->on_step(*world, world->step());
+      ++done;
+    }
+  }
+
+  std::unique_ptr<World> world;
+  std::unique_ptr<LiveServer> server;
+  std::atomic<bool> stop{false};
+  std::atomic<int> done{0};
+};
+
+TEST_F(Live, ServesItsPageAndTheScene) {
+  auto http = client();
+  const auto page = http.Get("/");
+  ASSERT_TRUE(page);
+  EXPECT_EQ(page->status, 200);
+  EXPECT_THAT(page->body, testing::HasSubstr("data-source=\"live\""));
+  const auto scene = http.Get("/scene");
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(scene->body.substr(0, 4), "GTV1");
+  EXPECT_THAT(scene->body, testing::HasSubstr("\"live\":true"));
+  EXPECT_EQ(http.Get("/elsewhere")->status, 404);
+}
+
+TEST_F(Live, RefusesOtherOriginsAndHosts) {
+  auto http = client();
+  const std::string own = "127.0.0.1:" + std::to_string(server->port());
+  const auto status = [&](const httplib::Headers& headers) {
+    return http.Get("/scene", headers)->status;
+  };
+  EXPECT_EQ(status({{"Origin", "http://" + own}}), 200);
+  EXPECT_EQ(status({{"Origin", "http://example.org"}}), 403);
+  EXPECT_EQ(status({{"Origin", "https://" + own}}), 403);
+  EXPECT_EQ(status({{"Origin", "null"}}), 403);
+  EXPECT_EQ(status({{"Origin", "http://127.0.0.1:1"}}), 403);
+  EXPECT_EQ(status({{"Sec-Fetch-Site", "cross-site"}}), 403);
+  EXPECT_EQ(status({{"Sec-Fetch-Site", "same-site"}}), 403);
+  EXPECT_EQ(status({{"Sec-Fetch-Site", "same-origin"}}), 200);
+  EXPECT_EQ(http.Post("/pause", {{"Origin", "http://example.org"}}, "", "text/plain")->status, 403);
+  // A foreign name that leads to this machine.
+  EXPECT_EQ(status({{"Host", "example.org"}}), 403);
+}
+
+TEST_F(Live, SendsFramesAsTheyComeAndThenTheEnd) {
+  std::string received;
+  std::atomic<bool> connected{false};
+  std::thread viewer([&] {
+    auto http = client();
+    http.Get("/events", [&](const char* data, std::size_t size) {
+      received.append(data, size);
+      connected = true;
+      return true;
+    });
+  });
+  while (!connected) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  run(50);
+  server->finish(10.0);
+  viewer.join();
+  std::size_t frames = 0;
+  for (std::size_t at = 0; (at = received.find("event: frame\n", at)) != std::string::npos; ++at)
+    ++frames;
+  EXPECT_GE(frames, 29U);  // half a second, 60 per second, steps of 10 ms
+  EXPECT_LE(frames, 51U);
+  EXPECT_THAT(received, testing::EndsWith("event: end\ndata: end\n\n"));
+}
+
+TEST_F(Live, PausesStepsAndResumes) {
+  auto http = client();
+  ASSERT_EQ(http.Post("/pause")->status, 204);
+  std::thread simulation([this] { run(1000000); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(done, 0);
+  for (int expected = 1; expected <= 2; ++expected) {
+    http.Post("/step");
+    for (int i = 0; i < 500 && done < expected; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_EQ(done, expected);
+  }
+  http.Post("/resume");
+  for (int i = 0; i < 500 && done < 5; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_GE(done, 5);
+  http.Post("/pause");
+  stop = true;  // ends a paused run, too
+  simulation.join();
+}
+
+TEST_F(Live, EndsAtOnceWhenAViewerStaysAway) {
+  auto http = client();
+  http.Get("/");
+  const auto begin = std::chrono::steady_clock::now();
+  server.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(4));
+}
+
+TEST_F(Live, APortThatIsTakenIsAnError) {
+  EXPECT_THROW(LiveServer(*world, "cube", "test", {.port = server->port()}), Error);
+}
+
+TEST(LiveFramesQueue, KeepsTheNewestAndTellsWhenItIsClosed) {
+  LiveFrames frames;
+  for (int i = 0; i < 2500; ++i) {
+    LiveFrame frame;
+    frame.frame.time = i;
+    frames.push(std::move(frame));
+  }
+  bool closed = true;
+  const auto first = frames.next(0, std::chrono::milliseconds(0), closed);
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(closed);
+  EXPECT_EQ(first->number, 700U);
+  EXPECT_EQ(first->frame->frame.time, 700.0);
+  EXPECT_FALSE(frames.next(2500, std::chrono::milliseconds(1), closed));
+  frames.close();
+  EXPECT_FALSE(frames.next(2500, std::chrono::seconds(100), closed));
+  EXPECT_TRUE(closed);
+}
+
+}  // namespace
+}  // namespace gotai::view
