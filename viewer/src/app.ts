@@ -31,6 +31,7 @@ export class App {
   private readonly help = new Help();
   private readonly subtitle = h("p");
   private dirty = true;
+  private stepping = false; // waits for the frame of a single step
   private last = performance.now();
 
   constructor(private readonly run: Run, private readonly link?: LiveLink) {
@@ -79,6 +80,8 @@ export class App {
 
   /** New frames have come from the simulation. */
   framesArrived(): void {
+    if (this.stepping) this.player.seek(this.player.end);
+    this.stepping = false;
     this.dirty = true;
   }
 
@@ -159,9 +162,14 @@ export class App {
   }
 
   private step(count: number): void {
-    if (this.player.live && count > 0 && this.player.atEnd) this.link?.step();
+    const atNewest = this.player.live && count > 0 && this.player.atEnd;
     this.player.step(count);
-    if (this.player.live) this.link?.pause(true);
+    if (atNewest) {
+      this.link?.step();
+      this.stepping = true;
+    } else if (this.player.live) {
+      this.link?.pause(true);
+    }
     this.dirty = true;
   }
 

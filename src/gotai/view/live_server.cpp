@@ -27,6 +27,11 @@ class Gate {
   /// Lets one step through and stays closed.
   void step() { set(true, 1); }
 
+  bool is_paused() {
+    const std::scoped_lock lock(mutex_);
+    return paused_;
+  }
+
   void wait(const std::function<bool()>& stop) {
     std::unique_lock lock(mutex_);
     while (paused_ && steps_ == 0) {
@@ -192,8 +197,9 @@ std::string LiveServer::address() const { return fmt::format("http://127.0.0.1:{
 void LiveServer::on_step(const World& world, const model::StepReport& report) {
   State& state = *state_;
   state.steps.push_back(report);
-  if (world.time() < state.next_frame - 1e-9) return;
-  state.next_frame += state.frame_time;
+  // Single steps are all shown.
+  if (world.time() < state.next_frame - 1e-9 && !state.gate.is_paused()) return;
+  if (world.time() >= state.next_frame - 1e-9) state.next_frame += state.frame_time;
   // Steps longer than a frame's time: the next frame is the next step.
   state.next_frame = std::max(state.next_frame, world.time());
   state.frames.push({capture(world), std::exchange(state.steps, {})});
