@@ -59,6 +59,7 @@ TEST(LoadMesh, ObjErrorsNameTheLine) {
 TEST(LoadMesh, FilesThatCannotBeRead) {
   EXPECT_THROW(load_mesh("no/such/file.obj"), FileError);
   EXPECT_THROW(load_mesh("."), FileError);
+  EXPECT_THROW(load_mesh("/dev/null"), FileError);
 }
 
 TEST(LoadMesh, UnitUpAndScale) {

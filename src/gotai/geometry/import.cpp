@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <new>
 #include <utility>
 
 #include "gotai/core/error.h"
@@ -14,17 +15,25 @@ namespace gotai::geometry::detail {
 
 std::string read_bytes(const std::filesystem::path& path) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error))
-    throw FileError(path.string(), "is a folder; name a mesh file");
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  // A folder cannot be read, a pipe or a device may never end.
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw FileError(path.string(), std::filesystem::is_directory(status)
+                                       ? "is a folder; name a mesh file"
+                                       : "is no ordinary file");
   std::ifstream in(path, std::ios::binary);
   if (!in)
     throw FileError(path.string(), fmt::format("cannot be opened: {}", std::strerror(errno)));
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  std::string bytes(error ? 0 : size, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (error || static_cast<std::uintmax_t>(in.gcount()) != size)
-    throw FileError(path.string(), "cannot be read to its end");
-  return bytes;
+  try {
+    std::string bytes(error ? 0 : size, '\0');
+    in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (error || static_cast<std::uintmax_t>(in.gcount()) != size)
+      throw FileError(path.string(), "cannot be read to its end");
+    return bytes;
+  } catch (const std::bad_alloc&) {
+    throw FileError(path.string(), fmt::format("has {} bytes, more than fit into memory", size));
+  }
 }
 
 namespace {
