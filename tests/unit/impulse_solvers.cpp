@@ -85,7 +85,7 @@ TEST(Solvers, AgreeOnRandomIslands) {
     ConeSolution exact;
     ConeSolution iterative;
     solve_exact(problem, nullptr, 1e-12, exact);
-    GaussSeidelSolver().solve(problem, nullptr, 1e-11, 3000, iterative);
+    GaussSeidelSolver().solve(problem, nullptr, 1e-11, 30000, iterative);
     EXPECT_TRUE(exact.converged) << trial << " mu " << mu << " n " << problem.size() << " residual "
                                  << exact.residual;
     EXPECT_TRUE(iterative.converged)

@@ -5,8 +5,26 @@
 
 #include "gotai/impulse/contact_kinematics.h"
 #include "gotai/impulse/island_solver.h"
+#include "gotai/impulse/row_solver.h"
 
 namespace gotai::impulse {
+namespace {
+
+// Few rows converge in a handful of sweeps; where they do not, Newton makes the answer exact.
+void solve_pairs(const ConeProblem& problem, const model::ImpulseSettings& settings,
+                 ConeSolution& solution) {
+  const double scale = velocity_scale(problem);
+  if (!uses_exact_solver(problem, settings)) {
+    solve_rows(problem, settings.tolerance * scale, settings.max_iterations, solution);
+    return;
+  }
+  constexpr double exact_tolerance = 1e-13;
+  constexpr int worthwhile_sweeps = 60;
+  solve_rows(problem, exact_tolerance * scale, worthwhile_sweeps, solution);
+  if (!solution.converged) solve_by_settings(problem, nullptr, settings, solution);
+}
+
+}  // namespace
 
 ApparentMethod::ApparentMethod(const model::Settings& settings) : settings_(settings) {}
 
@@ -108,7 +126,7 @@ void ApparentMethod::solve(const model::BodyState& bodies, const std::vector<dou
   ConeSolution solution;
   for (const Island& island : islands_) {
     assemble_pairs(bodies, island, problem);
-    solve_by_settings(problem, nullptr, settings_.impulse, solution);
+    solve_pairs(problem, settings_.impulse, solution);
     report_.rows += static_cast<std::uint32_t>(problem.size());
     report_.residual = std::max(report_.residual, solution.residual);
     report_.iterations =

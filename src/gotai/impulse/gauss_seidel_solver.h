@@ -9,11 +9,13 @@
 
 namespace gotai::impulse {
 
-/// Solves a ConeProblem patch by patch: the impulses of one pair of bodies exactly (NewtonSolver,
-/// with friction and the same compliance, so that the load is shared evenly within the pair) while
-/// all others stand still, over and over in a fixed order. A block is a whole patch because
-/// redundant contacts of one patch, taken one by one, would make the sweeps crawl and would leave
-/// the load where they first put it.
+/// Solves a ConeProblem by two kinds of sweeps in fixed order, in rounds:
+///   contact sweeps  normal, then tangents of one contact after the other, all others at rest:
+///   cheap,
+///                   twice as many in every round;
+///   patch sweeps    all contacts of a pair together, exactly (NewtonSolver): redundant contacts of
+///                   one patch make contact sweeps crawl and leave the load where it first fell; a
+///                   patch sweep shares it evenly by the same compliance as the exact solver.
 class GaussSeidelSolver {
  public:
   /// @param guess       impulses to start from, or nothing
@@ -32,11 +34,18 @@ class GaussSeidelSolver {
   };
 
   void cut(const ConeProblem& problem);
+  void prepare_contacts(const ConeProblem& problem);
+  void sweep_contacts(const ConeProblem& problem, ConeSolution& solution) const;
+  void sweep_until(const ConeProblem& problem, double limit, int last,
+                   ConeSolution& solution) const;
+  void sweep_patches(const ConeProblem& problem, double limit, bool all, ConeSolution& solution);
   double residual(const ConeProblem& problem, const Patch& patch,
                   const ConeSolution& solution) const;
   void update(const ConeProblem& problem, Patch& patch, double limit, ConeSolution& solution);
 
   std::vector<Patch> patches_;
+  std::vector<double> normal_step_;      // per contact: 1 / A_NN [kg]
+  std::vector<double> tangential_step_;  // per contact: 1 / (bound of the eigenvalues of A_TT) [kg]
   std::vector<Vec3> guess_;
   NewtonSolver newton_;
 };

@@ -9,14 +9,16 @@
 
 namespace gotai::impulse {
 
+bool uses_exact_solver(const ConeProblem& problem, const model::ImpulseSettings& settings) {
+  return settings.solver == model::SolverName::exact ||
+         (settings.solver == model::SolverName::automatic && problem.blocks <= exact_up_to_bodies);
+}
+
 void solve_by_settings(const ConeProblem& problem, const std::vector<Vec3>* guess,
                        const model::ImpulseSettings& settings, ConeSolution& solution) {
   constexpr double exact_tolerance = 1e-13;  // of the velocity scale: rounding error
   const double scale = velocity_scale(problem);
-  const bool exact =
-      settings.solver == model::SolverName::exact ||
-      (settings.solver == model::SolverName::automatic && problem.blocks <= exact_up_to_bodies);
-  if (exact) {
+  if (uses_exact_solver(problem, settings)) {
     solve_exact(problem, guess, exact_tolerance * scale, solution);
   } else {
     GaussSeidelSolver().solve(problem, guess, settings.tolerance * scale, settings.max_iterations,

@@ -16,6 +16,9 @@ namespace gotai::impulse {
 /// Exact for problems up to this many bodies when solver = "auto".
 inline constexpr std::size_t exact_up_to_bodies = 64;
 
+/// What the settings' solver means for a problem: "auto" chooses by size.
+bool uses_exact_solver(const ConeProblem& problem, const model::ImpulseSettings& settings);
+
 /// Solves one problem with the solver, tolerance and iterations that the settings name.
 /// @param guess  impulses to start from, or nothing
 void solve_by_settings(const ConeProblem& problem, const std::vector<Vec3>* guess,

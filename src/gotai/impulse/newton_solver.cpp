@@ -49,7 +49,7 @@ void NewtonSolver::start(const ConeProblem& problem, ConeSolution& solution) {
 }
 
 void NewtonSolver::solve(const ConeProblem& problem, const std::vector<Vec3>* guess, double limit,
-                         ConeSolution& solution) {
+                         Effort effort, ConeSolution& solution) {
   start(problem, solution);
   if (guess != nullptr) {
     solution.p = *guess;
@@ -58,7 +58,8 @@ void NewtonSolver::solve(const ConeProblem& problem, const std::vector<Vec3>* gu
     solution.y = problem.y_free;
   }
   approach(problem, solution);
-  for (int round = 0; round < rescue_rounds; ++round) {
+  const int rounds = effort == Effort::full ? rescue_rounds : 0;
+  for (int round = 0; round < rounds; ++round) {
     if (polish_twice(problem, limit, polish_steps, solution)) return;
     relax_contacts(problem, rescue_sweeps, solution);
   }
@@ -129,10 +130,10 @@ void NewtonSolver::approach(const ConeProblem& problem, ConeSolution& solution) 
 bool NewtonSolver::polish_twice(const ConeProblem& problem, double limit, int max_iterations,
                                 ConeSolution& solution) {
   reference_.assign(problem.size(), Vec3::Zero());
-  bool converged = polish(problem, limit, max_iterations, solution);
+  bool converged = polish(problem, limit, 1, max_iterations, solution);
   if (converged) {
     reference_ = solution.p;
-    converged = polish(problem, limit, max_iterations, solution);
+    converged = polish(problem, limit, 0, max_iterations, solution);
   }
   solution.residual = natural_map_residual(problem, solution.p, solution.y);
   return converged;
@@ -142,8 +143,8 @@ bool NewtonSolver::polish_twice(const ConeProblem& problem, double limit, int ma
 // first order
 //   dp = K (P(z) - p) - rho K P'(z) J dy,  K = (1 - (1 - rho R) P'(z))^-1,
 // which leaves (1 + J' rho K P'(z) J) dy = y_free + J' p - y + J' K (P(z) - p).
-bool NewtonSolver::polish(const ConeProblem& problem, double limit, int max_iterations,
-                          ConeSolution& solution) {
+bool NewtonSolver::polish(const ConeProblem& problem, double limit, int least_iterations,
+                          int max_iterations, ConeSolution& solution) {
   for (int iteration = 0;; ++iteration) {
     F_ = velocities_of(problem, solution.p) - solution.y;
     solution.y += F_;
@@ -188,7 +189,8 @@ bool NewtonSolver::polish(const ConeProblem& problem, double limit, int max_iter
       worst = std::max(worst, defect_[i].norm() * inertness_[i]);
       problem.add_impulse(i, p_[i], F_);
     }
-    solution.converged = worst <= limit;
+    // At least one step from a guess: its shares may be uneven although its velocities are right.
+    solution.converged = worst <= limit && iteration >= least_iterations;
     if (solution.converged || iteration == max_iterations) return solution.converged;
 
     ++solution.iterations;

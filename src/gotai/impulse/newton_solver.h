@@ -25,10 +25,16 @@ namespace gotai::impulse {
 ///             velocities become those of rigid contact, c = 0 instead of c = -R p.
 class NewtonSolver {
  public:
+  /// What to do when friction keeps Newton from converging.
+  enum class Effort {
+    bounded,  ///< give up
+    full,     ///< start anew from sweeps over the contacts, several times
+  };
+
   /// @param guess  impulses to start from (not solution.p itself), or nothing
   /// @param limit  residual to reach [m/s]
   void solve(const ConeProblem& problem, const std::vector<Vec3>* guess, double limit,
-             ConeSolution& solution);
+             Effort effort, ConeSolution& solution);
   /// Only the polishing from a guess: for guesses that are nearly right.
   void refine(const ConeProblem& problem, const std::vector<Vec3>& guess, double limit,
               ConeSolution& solution);
@@ -38,7 +44,8 @@ class NewtonSolver {
   void approach(const ConeProblem& problem, ConeSolution& solution);
   bool polish_twice(const ConeProblem& problem, double limit, int max_iterations,
                     ConeSolution& solution);
-  bool polish(const ConeProblem& problem, double limit, int max_iterations, ConeSolution& solution);
+  bool polish(const ConeProblem& problem, double limit, int least_iterations, int max_iterations,
+              ConeSolution& solution);
   double evaluate(const ConeProblem& problem, double softness, const Eigen::VectorXd& y);
   void relax_contacts(const ConeProblem& problem, int sweeps, ConeSolution& solution) const;
 

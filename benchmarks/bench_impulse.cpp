@@ -1,0 +1,239 @@
+/// What impulse methods cost and keep, on whole scenes. Each part is one bar of docs/methods.md:
+///   bench_impulse apparent [LEVEL]    10 hexapods: impulse phase of exact and of apparent contacts
+///   bench_impulse growth [SIDE]       iterative solver: cost per contact, 100 and 4 SIDE^2
+///   hexapods bench_impulse rest [SECONDS]      a resting pile under every method: the energy it
+///   gains
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "gotai/core/parallel.h"
+#include "gotai/core/random.h"
+#include "gotai/core/stopwatch.h"
+#include "gotai/geometry/generate.h"
+#include "gotai/world/world.h"
+
+namespace {
+
+using namespace gotai;
+using ShapePointer = std::shared_ptr<const voxel::Shape>;
+
+ShapePointer hexapod(int level) {
+  geometry::GeneratorOptions options;
+  options.shape = "hexapod";
+  return std::make_shared<const voxel::Shape>(
+      voxel::make_shape("hexapod", geometry::generate(options), {.prepared_level = level}));
+}
+
+model::Settings settings_of(int level, double dt) {
+  model::Settings settings;
+  settings.gravity = Vec3(0, 0, -9.8);
+  settings.collision.level = level;
+  settings.time.step = dt;
+  return settings;
+}
+
+void set_surface(World& world, double restitution, double friction) {
+  model::Material material;
+  material.restitution = restitution;
+  material.friction = friction;
+  world.set_default_material(material);
+}
+
+/// `pile-time` of the experiments: hexapods above each other, lateral +-0.15 L, turned at random.
+void add_column(World& world, const ShapePointer& shape, int count) {
+  const ShapeId id = world.add_shape(shape);
+  Random random(1);
+  const double extent = 2.0;
+  for (int i = 0; i < count; ++i) {
+    BodyDescription body;
+    body.shape = id;
+    body.mass = 1.0;
+    body.com_position =
+        Vec3(random.uniform(-0.15, 0.15), random.uniform(-0.15, 0.15), 0.7 + 1.05 * i) * extent;
+    body.X_WM.q = random.rotation();
+    world.add_body(body);
+  }
+  world.add_plane({});
+}
+
+/// Sums over steps. Runs are deterministic, so that the cheapest of several runs of every single
+/// step is what the step costs.
+struct Totals {
+  double impulse_s = 0.0;
+  double contacts = 0.0;
+  double rows = 0.0;
+  double iterations = 0.0;
+  double residual = 0.0;
+};
+
+template <typename MakeWorld>
+Totals run(const MakeWorld& make_world, int skipped, int steps, int repeats) {
+  Totals totals;
+  std::vector<double> cheapest(static_cast<std::size_t>(steps), 1e30);
+  for (int k = 0; k < repeats; ++k) {
+    World world = make_world();
+    for (int n = 0; n < skipped; ++n) world.step();
+    for (double& cost : cheapest) {
+      const model::StepReport report = world.step();
+      cost = std::min(cost, report.impulse_s);
+      if (k > 0) continue;
+      totals.contacts += report.contacts;
+      totals.rows += report.solve.rows;
+      totals.iterations += report.solve.iterations;
+      totals.residual = std::max(totals.residual, report.solve.residual);
+    }
+  }
+  for (const double cost : cheapest) totals.impulse_s += cost;
+  return totals;
+}
+
+void apparent(int level) {
+  const ShapePointer shape = hexapod(7);
+  for (const double friction : {0.0, 0.3}) {
+    double cost[2] = {0.0, 0.0};
+    for (const auto contacts : {model::ContactTreatment::all, model::ContactTreatment::apparent}) {
+      model::Settings settings = settings_of(level, 0.01);
+      settings.impulse.contacts = contacts;
+      settings.impulse.solver = model::SolverName::exact;
+      const auto make_world = [&] {
+        World world(settings);
+        set_surface(world, 0.3, friction);
+        add_column(world, shape, 10);
+        return world;
+      };
+      const Totals totals = run(make_world, 0, 300, 7);
+      cost[contacts == model::ContactTreatment::apparent ? 1 : 0] = totals.impulse_s;
+      fmt::print(
+          "level {} mu {:.1f} {:9} impulses {:8.2f} ms/step, {:7.1f} contacts/step, "
+          "{:6.1f} rows/step, {:5.1f} iterations/step, residual {:.1e}\n",
+          level, friction, to_string(contacts), totals.impulse_s / 0.3, totals.contacts / 300,
+          totals.rows / 300, totals.iterations / 300, totals.residual);
+    }
+    fmt::print("  exact / apparent = {:.1f}\n", cost[0] / cost[1]);
+  }
+}
+
+/// A pile of hexapods in a container, in layers, let down by the method of the settings.
+World make_pile(const ShapePointer& shape, int per_side, int layers, double settle,
+                const model::Settings& settings) {
+  const double spacing = 2.1;
+  const auto build = [&] {
+    World world(settings);
+    set_surface(world, 0.0, 0.5);
+    const ShapeId id = world.add_shape(shape);
+    Random random(3);
+    for (int k = 0; k < layers; ++k) {
+      for (int i = 0; i < per_side; ++i) {
+        for (int j = 0; j < per_side; ++j) {
+          BodyDescription body;
+          body.shape = id;
+          body.mass = 1.0;
+          body.com_position =
+              spacing * Vec3(i + 0.5 - 0.5 * per_side, j + 0.5 - 0.5 * per_side, k + 0.75);
+          body.X_WM.q = random.rotation();
+          world.add_body(body);
+        }
+      }
+    }
+    ContainerDescription box;
+    box.inner = Vec3(spacing * per_side, spacing * per_side, 2.0 * spacing * layers);
+    world.add_container(box);
+    return world;
+  };
+  World world = build();
+  while (world.time() < settle) world.step();
+  return world;
+}
+
+void growth(int large_side) {
+  const ShapePointer shape = hexapod(7);
+  model::Settings settings = settings_of(4, 0.01);
+  settings.impulse.solver = model::SolverName::iterative;
+  settings.impulse.tolerance = 1e-3;
+  settings.impulse.max_iterations = 50;
+  double cost[2] = {0.0, 0.0};
+  for (const int large : {0, 1}) {
+    const int side = large == 0 ? 5 : large_side;
+    const auto make_world = [&] { return make_pile(shape, side, 4, 1.0, settings); };
+    const Totals totals = run(make_world, 0, 10, 1);
+    cost[large] = totals.impulse_s / totals.contacts;
+    fmt::print(
+        "{:4} hexapods: {:8.1f} contacts/step, {:8.2f} us per contact and step, {:.1f} "
+        "sweeps, residual {:.1e} m/s\n",
+        4 * side * side, totals.contacts / 10, 1e6 * cost[large], totals.iterations / 10,
+        totals.residual);
+  }
+  fmt::print("growth {:.2f}\n", cost[1] / cost[0]);
+}
+
+void rest(double seconds) {
+  constexpr double settle = 10.0;
+  struct Method {
+    model::ImpulseMethodName name;
+    model::ContactTreatment contacts;
+    model::SolverName solver;
+  };
+  using model::ContactTreatment;
+  using model::ImpulseMethodName;
+  using model::SolverName;
+  const ShapePointer shape = hexapod(5);
+  for (const Method& method :
+       {Method{ImpulseMethodName::constraint, ContactTreatment::all, SolverName::exact},
+        {ImpulseMethodName::constraint, ContactTreatment::all, SolverName::iterative},
+        {ImpulseMethodName::constraint, ContactTreatment::apparent, SolverName::exact},
+        {ImpulseMethodName::impulse_averaged, ContactTreatment::all, SolverName::exact},
+        {ImpulseMethodName::penalty, ContactTreatment::all, SolverName::exact},
+        {ImpulseMethodName::sem, ContactTreatment::all, SolverName::exact},
+        {ImpulseMethodName::vector_field, ContactTreatment::all, SolverName::exact},
+        {ImpulseMethodName::impulse, ContactTreatment::all, SolverName::exact}}) {
+    model::Settings settings = settings_of(4, 0.01);
+    settings.impulse.method = method.name;
+    settings.impulse.contacts = method.contacts;
+    settings.impulse.solver = method.solver;
+    settings.impulse.tolerance = 1e-8;
+    World world(settings);
+    set_surface(world, 0.3, 0.5);
+    add_column(world, shape, 4);
+    while (world.time() < settle) world.step();
+    const double start = world.energy().total();
+    double least = start;
+    double gain = 0.0;
+    double total_gain = 0.0;
+    Stopwatch clock;
+    while (world.time() < settle + seconds) {
+      world.step();
+      const double energy = world.energy().total();
+      gain = std::max(gain, energy - least);
+      total_gain = std::max(total_gain, energy - start);
+      least = std::min(least, energy);
+    }
+    double fastest = 0.0;
+    for (const Vec3& v : world.bodies().v_W) fastest = std::max(fastest, v.norm());
+    fmt::print(
+        "{:16} {:8} {:9} E(start) {:8.3f} J, highest above the start {:.2e} J, above the "
+        "lowest before {:.2e} J, fastest at the end {:.1e} m/s, {:.1f} s\n",
+        to_string(method.name), to_string(method.contacts), to_string(method.solver), start,
+        total_gain, gain, fastest, clock.seconds());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const ThreadLimit one_thread(1);
+  const std::string part = argc > 1 ? argv[1] : "";
+  if (part == "apparent") {
+    apparent(argc > 2 ? std::atoi(argv[2]) : 5);
+  } else if (part == "growth") {
+    growth(argc > 2 ? std::atoi(argv[2]) : 16);
+  } else if (part == "rest") {
+    rest(argc > 2 ? std::atof(argv[2]) : 60.0);
+  } else {
+    fmt::print(stderr, "usage: bench_impulse apparent [LEVEL] | growth [SIDE] | rest [SECONDS]\n");
+    return 2;
+  }
+  return 0;
+}
