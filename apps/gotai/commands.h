@@ -15,5 +15,6 @@ void add_check_command(CLI::App& app, Action& action);
 void add_run_command(CLI::App& app, Action& action);
 void add_info_command(CLI::App& app, Action& action);
 void add_export_command(CLI::App& app, Action& action);
+void add_experiment_command(CLI::App& app, Action& action);
 
 }  // namespace gotai::cli

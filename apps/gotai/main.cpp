@@ -15,10 +15,12 @@ constexpr const char* kFooter = R"(Start here:
   gotai run examples/hexapods.toml -o hexapods.h5       simulate and record
   gotai info hexapods.h5                                what is in the recording
   gotai export hexapods.h5 -o hexapods.glb              an animation for Blender and other tools
+  gotai experiment fall                                 a figure of the thesis, with what must come out
 `gotai COMMAND --help` explains each command with examples.
 
 Exit codes: 0 done · 1 bad input, or a file cannot be written · 2 wrong command line ·
-3 the simulation failed (recorded frames are kept) · 130 interrupted (likewise))";
+3 the simulation failed (recorded frames are kept) · 4 an experiment did not come out as expected ·
+130 interrupted (recorded frames are kept))";
 
 int run_action(const Action& action) {
   try {
@@ -48,6 +50,7 @@ int run(int argc, char** argv) {
   add_run_command(app, action);
   add_info_command(app, action);
   add_export_command(app, action);
+  add_experiment_command(app, action);
 
   try {
     app.parse(argc, argv);

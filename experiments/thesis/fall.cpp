@@ -23,7 +23,7 @@ std::vector<Json> sweep(Effort /*effort*/) {
                       {"model", "spheres"},
                       {"level", level},
                       {"integrator", "explicit-euler"}});
-  for (int level = 1; level <= 5; ++level)
+  for (int level = kCoarsestSurface; level <= 5; ++level)
     points.push_back(
         {{"method", "C"}, {"model", "surface"}, {"level", level}, {"integrator", "semi-implicit"}});
   return points;

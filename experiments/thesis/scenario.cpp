@@ -1,5 +1,7 @@
 #include "thesis/scenario.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -27,6 +29,8 @@ model::Settings settings_of(const Setup& setup) {
   if (setup.method == "C") {
     settings.impulse.method = model::ImpulseMethodName::constraint;
     settings.impulse.solver = model::SolverName::exact;
+    if (setup.model == "surface" && !setup.exact)
+      settings.impulse.solver = model::SolverName::substepped;
   } else if (setup.method == "A") {
     settings.impulse.method = model::ImpulseMethodName::constraint;
     settings.impulse.contacts = model::ContactTreatment::apparent;
@@ -54,9 +58,10 @@ World world_with_floor(const Setup& setup) {
 }
 
 std::shared_ptr<const voxel::Shape> prepare(const geometry::GeneratorOptions& options, int level,
-                                            const std::string& /*model*/) {
+                                            const std::string& model) {
   voxel::ShapeOptions how;
   how.prepared_level = level;
+  if (model == "surface") how.surface_level = level;
   return std::make_shared<const voxel::Shape>(
       voxel::make_shape(options.shape, geometry::generate(options), how));
 }
@@ -88,6 +93,80 @@ double bouncing_height(double z0, double z_touch, double e, double t) {
     }
     start += duration;
   }
+}
+
+double touching_height(const voxel::Shape& shape, const Quat& q_WB, const Setup& setup) {
+  double lowest = 0.0;
+  const Vec3& com = shape.mass.center_of_mass;
+  if (setup.model == "spheres") {
+    const double r = shape.pyramid.grid.voxel_radius(setup.level);
+    for (const Vec3& center : shape.pyramid.level(setup.level).center)
+      lowest = std::min(lowest, (q_WB * (center - com)).z() - r);
+  } else {
+    for (const geometry::Triangle& triangle : shape.mesh.triangles)
+      for (const std::uint32_t v : triangle)
+        lowest = std::min(lowest, (q_WB * (shape.mesh.vertices[v] - com)).z());
+  }
+  return -lowest;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+namespace {
+
+/// Method and model of every line of a plot or table, in order of appearance.
+std::vector<Json> lines_of(const std::vector<Record>& records) {
+  std::vector<Json> lines;
+  for (const Record& r : records) {
+    const Json line{{"method", r["method"]}, {"model", r["model"]}};
+    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+  }
+  return lines;
+}
+
+}  // namespace
+
+Plot by_level(const std::vector<Record>& records, const std::string& metric, std::string figure,
+              std::string title, std::string y_label, bool log_y) {
+  Plot plot{std::move(figure), std::move(title), "level", std::move(y_label), false, log_y, {}};
+  for (const Json& line : lines_of(records)) {
+    Series series;
+    series.label = label_of(line);
+    series.dashed = line["model"] == "surface";
+    for (const Record& r : select(records, line)) {
+      series.x.push_back(r["level"]);
+      series.y.push_back(r[metric]);
+    }
+    plot.series.push_back(series);
+  }
+  return plot;
+}
+
+Table level_table(const std::vector<Record>& records, const std::string& metric, std::string number,
+                  std::string title) {
+  std::vector<int> levels;
+  for (const Record& r : records)
+    if (std::find(levels.begin(), levels.end(), r["level"].get<int>()) == levels.end())
+      levels.push_back(r["level"]);
+  std::sort(levels.begin(), levels.end());
+  Table table{std::move(number), std::move(title), {{"method", "model"}}};
+  for (const int level : levels) table.rows[0].push_back(fmt::format("level {}", level));
+  for (const Json& line : lines_of(records)) {
+    std::vector<std::string> row{line["method"], line["model"]};
+    for (const int level : levels) {
+      Json match = line;
+      match["level"] = level;
+      const std::vector<Record> found = select(records, match);
+      row.push_back(found.empty() ? "" : fmt::format("{:.4g}", found[0][metric].get<double>()));
+    }
+    table.rows.push_back(row);
+  }
+  return table;
 }
 
 double rms(const std::vector<double>& a, const std::vector<double>& b) {

@@ -14,6 +14,10 @@
 namespace gotai::experiments {
 
 inline constexpr double kGravity = 9.8;  ///< [m/s^2]
+/// Finest level of the pyramid where an experiment does not prepare each level directly.
+inline constexpr int kFinestPrepared = 7;
+/// Coarsest level of the surface model.
+inline constexpr int kCoarsestSurface = voxel::kMinSurfaceLevel;
 
 /// What a point of most sweeps says: method, collision model, level, step. Keys of the same names.
 struct Setup {
@@ -24,6 +28,8 @@ struct Setup {
   double restitution = 0.5;
   double friction = 0.0;
   bool explicit_euler = false;
+  /// Surface contacts: all of them to round-off, or few per patch in sub-steps (many bodies).
+  bool exact = true;
 };
 
 /// Fills a setup from the keys of a point that are there (method, model, level, dt, integrator).
@@ -47,6 +53,21 @@ BodyId add_unit_body(World& world, ShapeId shape, const Vec3& x_W,
 /// Height of a ball that is dropped from z0 on a floor where it touches at z_touch, bouncing with
 /// e, at time t: the analytic solution of the free-fall experiments [m].
 double bouncing_height(double z0, double z_touch, double e, double t);
+
+/// Height of the centre of mass at which a turned shape touches the floor z = 0 in the setup's
+/// collision model [m].
+double touching_height(const voxel::Shape& shape, const Quat& q_WB, const Setup& setup);
+
+/// The middle value; the mean of the two middle ones of an even number.
+double median(std::vector<double> values);
+
+/// A metric by level, one line per method and model.
+Plot by_level(const std::vector<Record>& records, const std::string& metric, std::string figure,
+              std::string title, std::string y_label, bool log_y);
+
+/// A metric as a table: one row per method and model, one column per level.
+Table level_table(const std::vector<Record>& records, const std::string& metric, std::string number,
+                  std::string title);
 
 /// Root mean square of the differences.
 double rms(const std::vector<double>& a, const std::vector<double>& b);

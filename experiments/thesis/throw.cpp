@@ -18,7 +18,8 @@ std::vector<Json> sweep(Effort effort) {
   std::vector<Json> points;
   for (const char* model : {"spheres", "surface"})
     for (const double duration : {1.0, 2.0})
-      for (int level = 1; level <= finest; ++level)
+      for (int level = model == std::string("surface") ? kCoarsestSurface : 1; level <= finest;
+           ++level)
         for (const int rate : rates)
           points.push_back({{"method", "C"},
                             {"model", model},

@@ -1,0 +1,47 @@
+#include "thesis/drops.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gotai/core/random.h"
+
+namespace gotai::experiments {
+
+void add_drop(World& world, const Drop& drop) {
+  Random random(drop.seed);
+  const ShapeId shape = world.add_shape(drop.shape);
+  for (int i = 0; i < drop.count; ++i) {
+    const double x = random.uniform(-0.15, 0.15) * drop.extent;
+    const double y = random.uniform(-0.15, 0.15) * drop.extent;
+    const Quat q = random.rotation();
+    const Vec3 nudge = drop.perturbation * random.unit_vector();
+    add_unit_body(world, shape, Vec3(x, y, (0.7 + 1.05 * i) * drop.extent) + nudge, q);
+  }
+}
+
+Trajectory run_drop(const Setup& setup, const Drop& drop, double duration) {
+  World world = world_with_floor(setup);
+  add_drop(world, drop);
+  Trajectory trajectory;
+  const int samples = static_cast<int>(std::lround(50.0 * duration));
+  for (int k = 1; k <= samples; ++k) {
+    world.run_until(k / 50.0);
+    std::vector<Vec3> row;
+    for (model::BodyIndex i = 0; i < world.bodies().size(); ++i)
+      if (world.bodies().is_dynamic(i)) row.push_back(world.bodies().x_W[i]);
+    trajectory.push_back(row);
+  }
+  return trajectory;
+}
+
+double mean_error(const Trajectory& a, const Trajectory& b, double extent) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
+    for (std::size_t i = 0; i < a[k].size(); ++i, ++count) sum += (a[k][i] - b[k][i]).norm();
+  return count > 0 ? sum / (extent * static_cast<double>(count)) : 0.0;
+}
+
+double step_of_level(int level) { return 1.0 / (50.0 * std::exp2(level - 3)); }
+
+}  // namespace gotai::experiments

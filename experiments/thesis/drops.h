@@ -1,0 +1,37 @@
+/// @file
+/// Seeded drops of several bodies on the floor: the scenes of the pile and rock experiments.
+#pragma once
+
+#include <vector>
+
+#include "thesis/scenario.h"
+
+namespace gotai::experiments {
+
+/// Several equal bodies above each other, shifted and turned by a seed.
+struct Drop {
+  std::shared_ptr<const voxel::Shape> shape;
+  double extent = 1.0;  ///< L, the largest extent [m]
+  int count = 4;
+  std::uint64_t seed = 1;
+  double perturbation = 0.0;  ///< added to every start position, for the noise floor [m]
+};
+
+/// Adds the bodies: the i-th at z = (0.7 + 1.05 i) L, shifted sideways by up to 0.15 L, with a
+/// seeded rotation.
+void add_drop(World& world, const Drop& drop);
+
+/// Centres of mass of all dynamic bodies, sampled every 1/50 s: one row per sample.
+using Trajectory = std::vector<std::vector<Vec3>>;
+
+/// Runs and samples. @param duration  [s]
+Trajectory run_drop(const Setup& setup, const Drop& drop, double duration);
+
+/// Mean over bodies and samples of the distance between two trajectories, as a fraction of the
+/// extent.
+double mean_error(const Trajectory& a, const Trajectory& b, double extent);
+
+/// Step for a level: 1/50, 1/100, 1/200, 1/400 s for levels 3, 4, 5, 6.
+double step_of_level(int level);
+
+}  // namespace gotai::experiments
