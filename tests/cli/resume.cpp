@@ -4,7 +4,10 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <thread>
 
 #include "program.h"
@@ -79,6 +82,30 @@ TEST(Resume, MistakesSayWhatToDo) {
   EXPECT_EQ(run_gotai({"run"}).exit_code, 2);
   EXPECT_EQ(run_gotai({"run", scene, "--resume", path}).exit_code, 2);
   EXPECT_EQ(run_gotai({"run", "--resume", folder.file("none.h5")}).exit_code, 1);
+}
+
+TEST(FullDisk, TheFramesBeforeItAreReadable) {
+  const TemporaryFolder folder;
+  const std::string scene = write_text(folder, "scene.toml", kManyHexapods);
+  const std::string out = folder.file("out.txt");
+  const std::string disk = folder.file("disk");
+  std::filesystem::create_directory(disk);
+  // A disk of 8 MB of its own, in a name space of its own; what is seen there goes to `out`.
+  const std::string script =
+      "mount -t tmpfs -o size=8m none " + disk + " || exit 77; " + GOTAI_PROGRAM + " run " + scene +
+      " -o " + disk + "/run.h5 --set world.duration=1000 --set record.fps=100000 " +
+      "--set time.step=0.001 --set pour.0.count=4 2>&1; " + "echo exit code $?; " + GOTAI_PROGRAM +
+      " info " + disk + "/run.h5 --json";
+  const std::string command = "unshare -rm sh -c '" + script + "' >" + out + " 2>/dev/null";
+  if (std::system(command.c_str()) != 0) GTEST_SKIP() << "needs unshare and mount of tmpfs";
+  std::ifstream in(out);
+  const std::string said((std::istreambuf_iterator<char>(in)), {});
+  EXPECT_THAT(said, HasSubstr("No space left on device"));
+  EXPECT_THAT(said, HasSubstr("exit code 1"));
+  const std::size_t json = said.find('{');
+  ASSERT_NE(json, std::string::npos) << said;
+  const auto info = nlohmann::json::parse(said.substr(json));
+  EXPECT_GT(info.at("frames").get<int>(), 10) << said;
 }
 
 }  // namespace
