@@ -23,6 +23,7 @@ struct Chunk {
   model::ContactSet contacts;
   std::size_t begin = 0;  // place of its first contact among all
   TestCounts tests{};
+  double reduction_error = 0.0;
 };
 
 // Many more tasks than threads, so that they end together; few enough that joining is cheap.
@@ -65,6 +66,7 @@ void place(const model::ContactSet& from, std::size_t begin, model::ContactSet& 
   copy(from.gap, to.gap);
   copy(from.anchor_A, to.anchor_A);
   copy(from.anchor_B, to.anchor_B);
+  copy(from.friction_W, to.friction_W);
   copy(from.area, to.area);
   copy(from.feature, to.feature);
 }
@@ -97,7 +99,7 @@ struct CollisionCache::Storage {
   std::vector<SphereTree> trees;
   std::vector<Chunk> chunks;
   tbb::enumerable_thread_specific<SphereScratch> scratch;
-  tbb::enumerable_thread_specific<SurfaceSearch> surface_scratch;
+  tbb::enumerable_thread_specific<SurfaceScratch> surface_scratch;
 
   void refresh_shapes(Shapes current, bool with_sphere_trees);
   void refresh_radii(const model::BodyState& bodies, const model::CollisionSettings& settings);
@@ -134,7 +136,8 @@ CollisionCache& CollisionCache::operator=(CollisionCache&&) noexcept = default;
 
 SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
                                const model::CollisionSettings& settings, double margin,
-                               CollisionCache& cache, model::ContactSet& out) {
+                               CollisionCache& cache, model::ContactSet& out,
+                               const SearchOptions& options) {
   const bool surface = settings.model == model::CollisionModel::surface;
   if (surface) {
     check_surfaces(bodies, shapes);
@@ -158,13 +161,15 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
     chunk.tests.fill(0);
     const std::size_t end = std::min(pairs, (c + 1) * size);
     if (surface) {
-      SurfaceSearch& search = storage.surface_scratch.local();
-      search.tests = 0;
+      SurfaceScratch& scratch = storage.surface_scratch.local();
+      scratch.search.tests = 0;
+      scratch.reduction_error = 0.0;
       for (std::size_t p = c * size; p < end; ++p) {
-        append_surface_contacts(bodies, storage.candidates[p], shapes, margin, search,
+        append_surface_contacts(bodies, storage.candidates[p], shapes, margin, options, scratch,
                                 chunk.contacts);
       }
-      chunk.tests[0] = search.tests;
+      chunk.tests[0] = scratch.search.tests;
+      chunk.reduction_error = scratch.reduction_error;
       return;
     }
     SphereScratch& scratch = storage.scratch.local();
@@ -178,6 +183,8 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
   statistics.candidate_pairs = static_cast<std::uint32_t>(pairs);
   join(std::span(storage.chunks).first(count), out);
   for (std::size_t c = 0; c < count; ++c) {
+    statistics.reduction_error =
+        std::max(statistics.reduction_error, storage.chunks[c].reduction_error);
     for (std::size_t h = 0; h < statistics.tests_per_level.size(); ++h) {
       statistics.tests_per_level[h] += storage.chunks[c].tests[h];
       statistics.tests += storage.chunks[c].tests[h];

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 
+#include "gotai/collision/search_options.h"
 #include "gotai/model/body_state.h"
 #include "gotai/model/contact_set.h"
 #include "gotai/model/settings.h"
@@ -18,7 +19,10 @@ namespace gotai::collision {
 /// Work done by one search.
 struct SearchStatistics {
   std::uint32_t candidate_pairs = 0;  ///< from the broad phase
-  std::uint64_t tests = 0;            ///< sphere-sphere and sphere-plane tests
+  std::uint64_t tests = 0;            ///< sphere-sphere and sphere-plane tests (or surface samples)
+  /// Largest error of a reduction (Reduction::error): the farthest wrench of a contact left out
+  /// from one that was kept; 0 when all are kept.
+  double reduction_error = 0.0;
   /// The same by level (Fig. 6-8): tests_per_level[h - 1] at level h.
   std::array<std::uint64_t, voxel::kMaxLevel> tests_per_level{};
 };
@@ -42,11 +46,13 @@ class CollisionCache {
 /// @param shapes    indexed by BodyState::shape
 /// @param margin    contacts are found up to this gap [m], >= 0
 /// @param[out] out  sorted by (body_a, body_b, feature); storage is reused
+/// @param options   of the step that the contacts are for
 /// @throws InvalidArgument when the level is finer than a shape's prepared level, naming the shape
 ///         and both levels
 SearchStatistics find_contacts(const model::BodyState& bodies,
                                std::span<const std::shared_ptr<const voxel::Shape>> shapes,
                                const model::CollisionSettings& settings, double margin,
-                               CollisionCache& cache, model::ContactSet& out);
+                               CollisionCache& cache, model::ContactSet& out,
+                               const SearchOptions& options = {});
 
 }  // namespace gotai::collision

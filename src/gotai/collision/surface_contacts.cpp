@@ -1,6 +1,9 @@
 #include "gotai/collision/surface_contacts.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "gotai/collision/relative_pose.h"
 
@@ -17,6 +20,12 @@ Vec3 sample_point(const voxel::SurfaceModel& model, std::uint32_t sample) {
   const voxel::PointPacket& packet = model.tree.points[sample / voxel::kLanes];
   const std::uint32_t lane = sample % voxel::kLanes;
   return model.center + Vec3(packet.x[lane], packet.y[lane], packet.z[lane]);
+}
+
+// Never zero, so that areas can weigh.
+double sample_area(const voxel::SurfaceModel& model, std::uint32_t sample) {
+  return std::max(static_cast<double>(model.tree.area[sample]),
+                  1e-3 * model.spacing * model.spacing);
 }
 
 SamplePose sample_pose(const Pose& X_BA, const voxel::SurfaceModel& a,
@@ -39,29 +48,76 @@ float search_margin(double margin) {
   return static_cast<double>(rounded) > margin ? std::nextafter(rounded, 0.0F) : rounded;
 }
 
+// Reaches, as fractions of the smaller body's size: of contacts at rest; of what impacts elsewhere
+// may add to the approach within a step; and the farthest between shapes.
+constexpr double kRestReach = 0.003;
+constexpr double kImpactReach = 0.025;
+constexpr double kFarthestReach = 0.1;
+constexpr double kApproachSafety = 1.3;
+// The deepest contact is taken beside remembered ones only if deeper by this fraction of the size.
+constexpr double kDepthStep = 2e-4;
+
+// How two bodies move against each other, in the frame of body a (its axes, its centre of mass).
+class PairMotion {
+ public:
+  PairMotion(const BodyState& bodies, const BodyPair& pair, double dt) : dt_(dt) {
+    const BodyIndex a = pair.body_a;
+    const BodyIndex b = pair.body_b;
+    size_ = 2.0 * bodies.bounding_radius[a];
+    between_shapes_ = bodies.geometry[b] == model::Geometry::shape;
+    if (between_shapes_) size_ = std::min(size_, 2.0 * bodies.bounding_radius[b]);
+    const Quat q_AW = bodies.q_WB[a].conjugate();
+    v_A_ =
+        q_AW * (bodies.v_W[a] - bodies.v_W[b] - bodies.w_W[b].cross(bodies.x_W[a] - bodies.x_W[b]));
+    w_A_ = q_AW * (bodies.w_W[a] - bodies.w_W[b]);
+    fastest_ = v_A_.norm() + w_A_.norm() * bodies.bounding_radius[a];
+  }
+
+  double size() const { return size_; }
+
+  // The margin up to which contacts of this pair matter in the step [m].
+  double reach(double margin) const {
+    if (!(dt_ > 0.0)) return margin;
+    const double needed = kRestReach * size_ + fastest_ * dt_;
+    return std::min({margin, needed, between_shapes_ ? kFarthestReach * size_ : needed});
+  }
+
+  bool may_close(const ContactCandidate& c) const {
+    if (!(dt_ > 0.0)) return true;
+    const double approach = std::max(0.0, -c.normal_A.dot(v_A_ + w_A_.cross(c.point_A)));
+    return c.gap <= (kRestReach + kImpactReach) * size_ + kApproachSafety * approach * dt_;
+  }
+
+ private:
+  double dt_;
+  double size_;
+  bool between_shapes_;
+  Vec3 v_A_, w_A_;  // of a against b, at a's centre of mass
+  double fastest_;  // no point of a moves faster against b [m/s]
+};
+
 // Samples of one body, P, in the field of the other, Q.
 class FieldContacts {
  public:
   FieldContacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes, bool samples_of_b)
       : samples_of_b_(samples_of_b),
-        p_(samples_of_b ? pair.body_b : pair.body_a),
-        q_(samples_of_b ? pair.body_a : pair.body_b),
-        bodies_(bodies),
-        samples_(shapes[bodies.shape[p_]]->surface),
-        field_(shapes[bodies.shape[q_]]->surface),
-        X_WP_(bodies.mesh_pose(p_)),
-        X_QP_(relative_pose(bodies.mesh_pose(q_), X_WP_)),
-        R_WP_(X_WP_.q.toRotationMatrix()),
+        p_MA_(bodies.p_MB[pair.body_a]),
+        samples_(shapes[bodies.shape[samples_of_b ? pair.body_b : pair.body_a]]->surface),
+        field_(shapes[bodies.shape[samples_of_b ? pair.body_a : pair.body_b]]->surface),
+        X_QP_(samples_of_b
+                  ? relative_pose(bodies.mesh_pose(pair.body_a), bodies.mesh_pose(pair.body_b))
+                  : relative_pose(bodies.mesh_pose(pair.body_b), bodies.mesh_pose(pair.body_a))),
         R_QP_(X_QP_.q.toRotationMatrix()) {}
 
-  void append(double margin, SurfaceSearch& search, model::ContactSet& out) const {
+  void append(double margin, const PairMotion& motion, SurfaceScratch& scratch) const {
     search_field(samples_.tree, field_.field, sample_pose(X_QP_, samples_, field_),
-                 search_margin(margin), search);
-    for (const SurfaceHit& hit : search.hits) append(hit, out);
+                 search_margin(margin), scratch.search);
+    for (const SurfaceHit& hit : scratch.search.hits) append(hit, motion, scratch.candidates);
   }
 
  private:
-  void append(const SurfaceHit& hit, model::ContactSet& out) const {
+  void append(const SurfaceHit& hit, const PairMotion& motion,
+              std::vector<ContactCandidate>& out) const {
     const Vec3 gradient_P = R_QP_.transpose() * to_double(hit.gradient);
     const double length = gradient_P.norm();
     // Where the field has no slope (the middle of a body) the sample's own normal is all there is.
@@ -69,26 +125,28 @@ class FieldContacts {
                                       : to_double(samples_.tree.normal[hit.sample]).normalized();
     const Vec3 d_P = fit_to_normal_cone(samples_.tree, hit.sample, toward);
     if (d_P.isZero()) return;
-    const double gap = hit.distance;
+    ContactCandidate c;
+    c.gap = hit.distance;
+    c.area = sample_area(samples_, hit.sample);
     const Vec3 own_P = sample_point(samples_, hit.sample);
-    const Vec3 other_P = own_P + gap * d_P;  // on Q's surface
-    const Vec3 own = own_P - bodies_.p_MB[p_];
-    const Vec3 other = X_QP_ * other_P - bodies_.p_MB[q_];
-    const Vec3 normal = R_WP_ * (samples_of_b_ ? d_P : Vec3(-d_P));
-    out.push(X_WP_.p + R_WP_ * (own_P + (0.5 * gap) * d_P), normal, gap,
-             samples_of_b_ ? other : own, samples_of_b_ ? own : other,
-             static_cast<double>(samples_.tree.area[hit.sample]),
-             surface_feature(samples_of_b_ ? 1 : 0, hit.sample));
+    if (samples_of_b_) {
+      c.normal_A = R_QP_ * d_P;
+      c.point_A = X_QP_ * own_P - p_MA_ + c.gap * c.normal_A;
+    } else {
+      c.normal_A = -d_P;
+      c.point_A = own_P - p_MA_;
+    }
+    c.share_A = c.point_A;
+    c.feature = surface_feature(samples_of_b_ ? 1 : 0, hit.sample);
+    if (motion.may_close(c)) out.push_back(c);
   }
 
   bool samples_of_b_;
-  BodyIndex p_, q_;
-  const BodyState& bodies_;
+  Vec3 p_MA_;
   const voxel::SurfaceModel& samples_;
   const voxel::SurfaceModel& field_;
-  Pose X_WP_;  // P's mesh frame in the world
   Pose X_QP_;  // P's mesh frame in Q's
-  Mat3 R_WP_, R_QP_;
+  Mat3 R_QP_;
 };
 
 // A half space that bodies rest on, in the frame of its body U: height is normal . p_U + offset.
@@ -105,39 +163,17 @@ class FaceContacts {
         a_(pair.body_a),
         b_(pair.body_b),
         model_(shapes[bodies.shape[pair.body_a]]->surface),
-        X_WA_(bodies.mesh_pose(pair.body_a)),
-        X_UA_(relative_pose({bodies.x_W[pair.body_b], bodies.q_WB[pair.body_b]}, X_WA_)),
-        R_UA_(X_UA_.q.toRotationMatrix()),
-        R_WA_(X_WA_.q.toRotationMatrix()) {}
+        X_UA_(relative_pose({bodies.x_W[pair.body_b], bodies.q_WB[pair.body_b]},
+                            bodies.mesh_pose(pair.body_a))),
+        R_UA_(X_UA_.q.toRotationMatrix()) {}
 
-  // @param acts  (point in U): does the face act on it?
-  template <typename Acts>
-  void append(const Face& face, std::uint32_t index, double margin, SurfaceSearch& search,
-              model::ContactSet& out, const Acts& acts) const {
-    const Vec3 n_A = R_UA_.transpose() * face.normal;
-    const double offset = face.normal.dot(X_UA_.p) + face.offset;
-    const Eigen::Vector3f n = n_A.cast<float>();
-    // Heights are searched in single precision with room to spare, then computed in double.
-    const double slack = 1e-5 * (model_.edge + std::abs(offset));
-    search_half_space(model_.tree, {n.x(), n.y(), n.z()},
-                      static_cast<float>(offset + n_A.dot(model_.center)),
-                      static_cast<float>(margin + slack), search);
-    for (const SurfaceHit& hit : search.hits) {
-      const Vec3 x_A = sample_point(model_, hit.sample);
-      const double gap = n_A.dot(x_A) + offset;
-      if (gap > margin || fit_to_normal_cone(model_.tree, hit.sample, -n_A).isZero()) continue;
-      const Vec3 x_U = X_UA_ * x_A;
-      if (!acts(x_U)) continue;
-      out.push(X_WA_.p + R_WA_ * (x_A - (0.5 * gap) * n_A), R_WA_ * n_A, gap,
-               x_A - bodies_.p_MB[a_], x_U - gap * face.normal,
-               static_cast<double>(model_.tree.area[hit.sample]),
-               surface_feature(index, hit.sample));
-    }
+  void append_plane(double margin, const PairMotion& motion, SurfaceScratch& scratch) const {
+    append({Vec3::UnitZ(), 0.0}, 0, margin, motion, scratch, [](const Vec3&) { return true; });
   }
 
   // Faces of the open-top box: they act below its rim, and only on bodies whose centre is inside or
   // points that are.
-  void append_container(double margin, SurfaceSearch& search, model::ContactSet& out) const {
+  void append_container(double margin, const PairMotion& motion, SurfaceScratch& scratch) const {
     const Vec3 half = bodies_.half_extent[b_];
     const auto above_floor_area = [&half](const Vec3& p_U) {
       return std::abs(p_U.x()) <= half.x() && std::abs(p_U.y()) <= half.y();
@@ -145,25 +181,72 @@ class FaceContacts {
     const bool body_inside =
         above_floor_area(bodies_.q_WB[b_].conjugate() * (bodies_.x_W[a_] - bodies_.x_W[b_]));
     const auto acts = [&](const Vec3& p_U) { return body_inside || above_floor_area(p_U); };
-    append({Vec3::UnitZ(), 0.0}, 0, margin, search, out, acts);
+    append({Vec3::UnitZ(), 0.0}, 0, margin, motion, scratch, acts);
     const std::array<Face, 4> walls{{{Vec3::UnitX(), half.x()},
                                      {-Vec3::UnitX(), half.x()},
                                      {Vec3::UnitY(), half.y()},
                                      {-Vec3::UnitY(), half.y()}}};
     for (std::uint32_t w = 0; w < walls.size(); ++w) {
-      append(walls[w], w + 1, margin, search, out,
+      append(walls[w], w + 1, margin, motion, scratch,
              [&](const Vec3& p_U) { return p_U.z() <= half.z() && acts(p_U); });
     }
   }
 
  private:
+  // @param acts  (point in U): does the face act on it?
+  template <typename Acts>
+  void append(const Face& face, std::uint32_t index, double margin, const PairMotion& motion,
+              SurfaceScratch& scratch, const Acts& acts) const {
+    const Vec3 n_A = R_UA_.transpose() * face.normal;
+    const double offset = face.normal.dot(X_UA_.p) + face.offset;
+    const Eigen::Vector3f n = n_A.cast<float>();
+    // Heights are searched in single precision with room to spare, then computed in double.
+    const double slack = 1e-5 * (model_.edge + std::abs(offset));
+    search_half_space(model_.tree, {n.x(), n.y(), n.z()},
+                      static_cast<float>(offset + n_A.dot(model_.center)),
+                      static_cast<float>(margin + slack), scratch.search);
+    for (const SurfaceHit& hit : scratch.search.hits) {
+      const Vec3 x_A = sample_point(model_, hit.sample);
+      ContactCandidate c;
+      c.gap = n_A.dot(x_A) + offset;
+      if (c.gap > margin || fit_to_normal_cone(model_.tree, hit.sample, -n_A).isZero()) continue;
+      if (!acts(X_UA_ * x_A)) continue;
+      c.point_A = x_A - bodies_.p_MB[a_];
+      c.normal_A = n_A;
+      c.area = sample_area(model_, hit.sample);
+      c.share_A = c.point_A;
+      c.feature = surface_feature(index, hit.sample);
+      if (motion.may_close(c)) scratch.candidates.push_back(c);
+    }
+  }
+
   const BodyState& bodies_;
   BodyIndex a_, b_;
   const voxel::SurfaceModel& model_;
-  Pose X_WA_;  // a's mesh frame in the world
   Pose X_UA_;  // a's mesh frame in the frame of the faces
-  Mat3 R_UA_, R_WA_;
+  Mat3 R_UA_;
 };
+
+// The part of the memory that belongs to a pair.
+std::span<const model::ContactMemory::Entry> remembered(
+    std::span<const model::ContactMemory::Entry> memory, const BodyPair& pair) {
+  const auto key = [](const model::ContactMemory::Entry& e) {
+    return std::pair(e.body_a, e.body_b);
+  };
+  const auto range = std::ranges::equal_range(memory, std::pair(pair.body_a, pair.body_b), {}, key);
+  return {range.begin(), range.end()};
+}
+
+void emit(const BodyState& bodies, const BodyPair& pair, const ContactCandidate& c,
+          const Mat3& R_WA, const Mat3& R_WB, model::ContactSet& out) {
+  const Vec3& x_A = bodies.x_W[pair.body_a];
+  const Vec3 normal = R_WA * c.normal_A;
+  const Vec3 on_a = R_WA * c.point_A;
+  const Vec3 on_b = on_a - c.gap * normal;
+  out.push(x_A + 0.5 * (on_a + on_b), normal, c.gap, c.point_A,
+           R_WB.transpose() * ((x_A - bodies.x_W[pair.body_b]) + on_b), c.area, c.feature);
+  out.friction_W.back() = x_A + R_WA * (c.share_A - (0.5 * c.gap) * c.normal_A);
+}
 
 }  // namespace
 
@@ -189,21 +272,37 @@ Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, co
 }
 
 void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
-                             double margin, SurfaceSearch& scratch, model::ContactSet& out) {
-  const auto begin = static_cast<std::uint32_t>(out.size());
-  out.pairs.push_back({pair.body_a, pair.body_b, begin, begin});
+                             double margin, const SearchOptions& options, SurfaceScratch& scratch,
+                             model::ContactSet& out) {
+  const PairMotion motion(bodies, pair, options.dt);
+  const double reach = motion.reach(margin);
+  scratch.candidates.clear();
   if (bodies.geometry[pair.body_b] == model::Geometry::shape) {
-    FieldContacts(bodies, pair, shapes, false).append(margin, scratch, out);
-    FieldContacts(bodies, pair, shapes, true).append(margin, scratch, out);
+    FieldContacts(bodies, pair, shapes, false).append(reach, motion, scratch);
+    FieldContacts(bodies, pair, shapes, true).append(reach, motion, scratch);
   } else {
     const FaceContacts faces(bodies, pair, shapes);
     if (bodies.geometry[pair.body_b] == model::Geometry::plane) {
-      faces.append({Vec3::UnitZ(), 0.0}, 0, margin, scratch, out, [](const Vec3&) { return true; });
+      faces.append_plane(reach, motion, scratch);
     } else {
-      faces.append_container(margin, scratch, out);
+      faces.append_container(reach, motion, scratch);
     }
   }
-  if (out.size() == begin) out.pairs.pop_back();
+  if (scratch.candidates.empty()) return;
+  const auto begin = static_cast<std::uint32_t>(out.size());
+  out.pairs.push_back({pair.body_a, pair.body_b, begin, begin});
+  const Mat3 R_WA = bodies.q_WB[pair.body_a].toRotationMatrix();
+  const Mat3 R_WB = bodies.q_WB[pair.body_b].toRotationMatrix();
+  if (options.contacts == model::ContactTreatment::reduced) {
+    reduce_contacts(scratch.candidates, remembered(options.memory, pair),
+                    {motion.size(), kDepthStep * motion.size()}, scratch.reduction);
+    scratch.reduction_error = std::max(scratch.reduction_error, scratch.reduction.error);
+    for (const std::uint32_t k : scratch.reduction.kept) {
+      emit(bodies, pair, scratch.candidates[k], R_WA, R_WB, out);
+    }
+  } else {
+    for (const ContactCandidate& c : scratch.candidates) emit(bodies, pair, c, R_WA, R_WB, out);
+  }
 }
 
 }  // namespace gotai::collision

@@ -8,6 +8,8 @@
 #include <span>
 
 #include "gotai/collision/broad_phase.h"
+#include "gotai/collision/reduction.h"
+#include "gotai/collision/search_options.h"
 #include "gotai/collision/surface_search.h"
 #include "gotai/model/body_state.h"
 #include "gotai/model/contact_set.h"
@@ -27,12 +29,22 @@ constexpr model::FeatureKey surface_feature(std::uint32_t direction, std::uint32
 /// @return the same, within the cone; zero when the sample faces away from the other body
 Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, const Vec3& toward);
 
+/// Storage of the search for one pair after another.
+struct SurfaceScratch {
+  SurfaceSearch search;
+  std::vector<ContactCandidate> candidates;
+  Reduction reduction;
+  double reduction_error = 0.0;  ///< largest Reduction::error so far
+};
+
 /// Appends the contacts of one pair with a gap up to the margin; body_a has a shape, body_b a
-/// shape, a plane or a container. Every contact's area is its sample's.
+/// shape, a plane or a container. Contacts that cannot close within options.dt are left out. With
+/// options.contacts = reduced few remain, which stand for the others' areas.
 /// @param shapes  indexed by BodyState::shape, with surface models
 /// @param margin  [m], >= 0
 void append_surface_contacts(const model::BodyState& bodies, const BodyPair& pair,
                              std::span<const std::shared_ptr<const voxel::Shape>> shapes,
-                             double margin, SurfaceSearch& scratch, model::ContactSet& out);
+                             double margin, const SearchOptions& options, SurfaceScratch& scratch,
+                             model::ContactSet& out);
 
 }  // namespace gotai::collision

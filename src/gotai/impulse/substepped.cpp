@@ -171,13 +171,15 @@ void SubsteppedConstraint::fill_rows(const model::BodyState& bodies) {
       const Vec3& n = contacts_->normal_W[c];
       const Vec3 r_a = contacts_->point_W[c] - bodies.x_W[a];
       const Vec3 r_b = contacts_->point_W[c] - bodies.x_W[b];
+      const Vec3 f_a = contacts_->friction_W[c] - bodies.x_W[a];
+      const Vec3 f_b = contacts_->friction_W[c] - bodies.x_W[b];
       const Vec3 t1 = tangent(n);
       const Vec3 t2 = n.cross(t1);
       const Vec3 j_a = r_a.cross(n);
       const Vec3 j_b = r_b.cross(n);
       const auto coupling = [&](const Vec3& u, const Vec3& v) {
-        return r_a.cross(u).dot(inverse_I_a * r_a.cross(v)) +
-               r_b.cross(u).dot(inverse_I_b * r_b.cross(v));
+        return f_a.cross(u).dot(inverse_I_a * f_a.cross(v)) +
+               f_b.cross(u).dot(inverse_I_b * f_b.cross(v));
       };
       const double k_11 = inverse_mass + coupling(t1, t1);
       const double k_22 = inverse_mass + coupling(t2, t2);
@@ -187,8 +189,8 @@ void SubsteppedConstraint::fill_rows(const model::BodyState& bodies) {
       set(row.j_a, l, j_a);
       set(row.j_b, l, j_b);
       set(row.t, l, t1);
-      set(row.f_a, l, r_a);
-      set(row.f_b, l, r_b);
+      set(row.f_a, l, f_a);
+      set(row.f_b, l, f_b);
       set(row.gap, l, contacts_->gap[c]);
       set(row.mass_n, l,
           1.0 / (inverse_mass + j_a.dot(inverse_I_a * j_a) + j_b.dot(inverse_I_b * j_b)));

@@ -14,6 +14,7 @@ void ContactSet::clear() {
   gap.clear();
   anchor_A.clear();
   anchor_B.clear();
+  friction_W.clear();
   area.clear();
   feature.clear();
 }
@@ -24,6 +25,7 @@ void ContactSet::resize(std::size_t count) {
   gap.resize(count);
   anchor_A.resize(count);
   anchor_B.resize(count);
+  friction_W.resize(count);
   area.resize(count);
   feature.resize(count);
 }
@@ -35,6 +37,7 @@ void ContactSet::push(const Vec3& point, const Vec3& normal, double gap_m, const
   gap.push_back(gap_m);
   anchor_A.push_back(a);
   anchor_B.push_back(b);
+  friction_W.push_back(point);
   area.push_back(area_m2);
   feature.push_back(key);
   pairs.back().end = static_cast<std::uint32_t>(gap.size());

@@ -34,6 +34,8 @@ struct ContactSet {
   std::vector<Vec3> anchor_A;       ///< the point on a, in a's body frame [m]
   std::vector<Vec3> anchor_B;       ///< the point on b, in b's body frame [m];
                                     ///< gap = normal . (x_A(anchor) - x_B(anchor)) when found
+  std::vector<Vec3> friction_W;     ///< where friction acts: the centre of the surface that the
+                                    ///< contact stands for [m], W; point_W unless reduced
   std::vector<double> area;         ///< surface that the contact stands for [m^2]; spheres: 1
   std::vector<FeatureKey> feature;  ///< stable key within the pair
 
@@ -42,7 +44,7 @@ struct ContactSet {
   void clear();
   /// Changes the number of contacts (not the pairs); whoever asks for more writes the new ones.
   void resize(std::size_t count);
-  /// Appends one contact to the last pair.
+  /// Appends one contact to the last pair. Friction acts at its point.
   void push(const Vec3& point, const Vec3& normal, double gap_m, const Vec3& a, const Vec3& b,
             double area_m2, FeatureKey key);
 };

@@ -1,0 +1,58 @@
+/// @file
+/// Few contacts that can carry what many can: the geometric heir of the apparent contact point
+/// [Makino 2007, chapter 5].
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gotai/core/types.h"
+#include "gotai/model/contact_memory.h"
+#include "gotai/model/contact_set.h"
+
+namespace gotai::collision {
+
+/// A contact of two bodies in the frame of one of them, before it is known whether it is kept.
+/// Frame A: axes of body a, origin at its centre of mass.
+struct ContactCandidate {
+  Vec3 point_A = Vec3::Zero();   ///< on body a [m]
+  Vec3 normal_A = Vec3::Zero();  ///< unit, from b to a
+  double gap = 0.0;              ///< [m]; the point on b is point_A - gap normal_A
+  double area = 0.0;             ///< [m^2], > 0
+  Vec3 share_A = Vec3::Zero();   ///< centre of the surface it stands for [m]; friction acts there
+  model::FeatureKey feature = 0;
+};
+
+inline constexpr std::size_t kMaxReduced = 8;  ///< contacts kept per pair
+inline constexpr std::size_t kMaxRemembered = 5;
+
+/// Sizes that a reduction works with.
+struct ReductionScale {
+  double length = 1.0;       ///< of the smaller body [m]: moments are counted in units of it
+  double depth_step = 0.0;   ///< a deeper contact replaces remembered ones only beyond this [m]
+  double resolution = 0.02;  ///< wrenches nearer than this are one (dimensionless)
+};
+
+/// Storage of a reduction.
+struct Reduction {
+  std::vector<std::uint32_t> kept;  ///< indices of the candidates kept, ascending
+  /// Every unit wrench of a candidate, (normal, arm x normal / length), is nearer than this to one
+  /// that is kept: the error of any load is at most this times the sum of its impulses.
+  double error = 0.0;
+  std::vector<double> distance;        // squared, to the nearest kept wrench
+  std::vector<std::uint32_t> nearest;  // its position in `kept`
+};
+
+/// Chooses at most kMaxReduced candidates: those that carried the largest impulses in the last step
+/// (at most kMaxRemembered), the deepest, then again and again the one whose wrench is farthest
+/// from all that were chosen. The others give their area to the nearest chosen one, whose share
+/// becomes the centre of that area. Ties go to the smaller index, so the choice is stable.
+/// @param[in,out] candidates  ascending by feature; area and share_A of kept ones are updated,
+///                            the areas of others become 0
+/// @param remembered          the pair's entries of the last step, ascending by feature
+void reduce_contacts(std::span<ContactCandidate> candidates,
+                     std::span<const model::ContactMemory::Entry> remembered,
+                     const ReductionScale& scale, Reduction& reduction);
+
+}  // namespace gotai::collision
