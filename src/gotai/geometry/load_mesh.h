@@ -18,7 +18,7 @@ struct LoadOptions {
   std::string unit = "m";
   /// The file's axis that points up: "x", "y" or "z"; empty is what the format prescribes (y for
   /// glTF) or else z.
-  std::string up = "";
+  std::string up = "";  // NOLINT(readability-redundant-string-init): lets callers leave it out
   /// Extra factor, > 0.
   double scale = 1.0;
 };
