@@ -40,7 +40,8 @@ Eigen::VectorXd lemke(const ConeProblem& problem) {
   for (Eigen::Index i = 0; i < n; ++i) {
     q_n[i] = q[3 * i];
     for (Eigen::Index j = 0; j < n; ++j) M(i, j) = A(3 * i, 3 * j);
-    M(i, i) += problem.compliance[static_cast<std::size_t>(i)];
+    // Pivoting needs a regular matrix; our own compliance would move velocities by R p, 1e-8.
+    M(i, i) += 1e-3 * problem.compliance[static_cast<std::size_t>(i)];
   }
   LinearComplementarityProblem lcp;
   lcp.size = static_cast<int>(n);
