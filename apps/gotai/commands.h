@@ -13,6 +13,7 @@ using Action = std::function<int()>;
 void add_shape_command(CLI::App& app, Action& action);
 void add_check_command(CLI::App& app, Action& action);
 void add_run_command(CLI::App& app, Action& action);
+void add_compare_command(CLI::App& app, Action& action);
 void add_info_command(CLI::App& app, Action& action);
 void add_export_command(CLI::App& app, Action& action);
 void add_experiment_command(CLI::App& app, Action& action);

@@ -48,6 +48,7 @@ int run(int argc, char** argv) {
   add_shape_command(app, action);
   add_check_command(app, action);
   add_run_command(app, action);
+  add_compare_command(app, action);
   add_info_command(app, action);
   add_export_command(app, action);
   add_experiment_command(app, action);

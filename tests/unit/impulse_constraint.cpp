@@ -171,6 +171,44 @@ TEST_P(Constraint, NewtonsCradleFollowsTheLcp) {
   EXPECT_NEAR(scene.bodies.v_W[2].x(), 2.0 / 3.0, tolerance());
 }
 
+TEST_P(Constraint, SlidingSphereBeginsToRollAtFiveSeventhsOfItsSpeed) {
+  // Golden sphere_rolling_onset. Each step takes mu g dt from the speed and adds its moment to the
+  // spin, until the contact point stands still; then it rolls for ever.
+  const nlohmann::json golden = golden_case("sphere_rolling_onset");
+  const auto& in = golden["inputs"];
+  const double R = in["R"];
+  const double mu = in["mu"];
+  const double g = in["g"];
+  const double dt = 1e-3;
+  test::ContactScene scene;
+  scene.surface(0.0, mu);
+  const auto ball = scene.add_body(1.0, Mat3::Identity() * (0.4 * R * R), Vec3(0, 0, R),
+                                   vec(in["v0"]), Vec3::Zero());
+  const auto floor =
+      scene.add_body(0.0, Mat3::Identity(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero());
+  scene.begin_pair(ball, floor);
+  scene.add_contact(Vec3::Zero(), Vec3::UnitZ());
+  const auto solver = method();
+  const auto slip = [&] { return scene.bodies.v_W[ball].x() - R * scene.bodies.w_W[ball].y(); };
+  double distance = 0.0;
+  double rolling_since = -1.0;
+  double distance_at_onset = 0.0;
+  for (int step = 1; step <= 1000; ++step) {
+    scene.strike(*solver, dt, Vec3(0, 0, -g * dt));
+    distance += scene.bodies.v_W[ball].x() * dt;
+    if (rolling_since < 0.0 && slip() < 1e-9) {
+      rolling_since = step * dt;
+      distance_at_onset = distance;
+    }
+  }
+  const auto& expected = golden["expected"];
+  EXPECT_NEAR(rolling_since, expected["t_roll"].get<double>(), 1.01 * dt);
+  EXPECT_NEAR(scene.bodies.v_W[ball].x(), expected["v_roll"].get<double>(), 1e-6);
+  EXPECT_NEAR(scene.bodies.w_W[ball].y(), expected["omega_roll"].get<double>(), 1e-6);
+  EXPECT_NEAR(distance_at_onset, expected["distance"].get<double>(), 4.0 * 2 * dt);
+  EXPECT_LE(std::abs(slip()), 1e-7);
+}
+
 TEST(Assembly, RowBiasFollowsTheGap) {
   // touching: e of the approach before gravity, nothing for separating contacts
   EXPECT_DOUBLE_EQ(row_bias(-2.0, -2.1, 0.0, 0.5, 0.01, 9.8), -1.0);

@@ -1,0 +1,123 @@
+// Piles at rest and scenes that show where a method ends. `bench_impulse rest` runs them for 60 s.
+#include <gtest/gtest.h>
+
+#include "gotai/core/random.h"
+#include "support/golden.h"
+#include "support/worlds.h"
+
+namespace gotai {
+namespace {
+
+using model::ContactTreatment;
+using model::ImpulseMethodName;
+using model::SolverName;
+
+struct Method {
+  ImpulseMethodName name;
+  ContactTreatment contacts;
+  SolverName solver;
+  double allowed_gain;  // [J], of about 40 J
+};
+
+class RestingPile : public testing::TestWithParam<Method> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Methods, RestingPile,
+    testing::Values(
+        Method{ImpulseMethodName::constraint, ContactTreatment::all, SolverName::exact, 1e-9},
+        Method{ImpulseMethodName::constraint, ContactTreatment::all, SolverName::iterative, 1e-6},
+        Method{ImpulseMethodName::constraint, ContactTreatment::apparent, SolverName::exact, 1e-9},
+        Method{ImpulseMethodName::impulse_averaged, ContactTreatment::all, SolverName::exact, 1e-9},
+        // Springs still give back what they stored when the pile came down.
+        Method{ImpulseMethodName::penalty, ContactTreatment::all, SolverName::exact, 1e-3},
+        Method{ImpulseMethodName::sem, ContactTreatment::all, SolverName::exact, 1e-6},
+        Method{ImpulseMethodName::vector_field, ContactTreatment::all, SolverName::exact, 1e-2}));
+
+TEST_P(RestingPile, GainsNoEnergy) {
+  model::Settings settings = test::thesis_settings(4, 0.01);
+  settings.impulse.method = GetParam().name;
+  settings.impulse.contacts = GetParam().contacts;
+  settings.impulse.solver = GetParam().solver;
+  World world(settings);
+  world.set_default_material(test::surface_material(0.3, 0.5));
+  BodyDescription body;
+  body.shape = world.add_shape(test::make_generated("hexapod", 5));
+  body.mass = 1.0;
+  Random random(1);
+  for (int i = 0; i < 4; ++i) {
+    body.com_position =
+        2.0 * Vec3(random.uniform(-.15, .15), random.uniform(-.15, .15), 0.7 + 1.05 * i);
+    body.X_WM.q = random.rotation();
+    world.add_body(body);
+  }
+  world.add_plane({});
+  world.run_until(10.0);
+  const double start = world.energy().total();
+  double gain = 0.0;
+  while (world.time() < 13.0) {
+    world.step();
+    gain = std::max(gain, world.energy().total() - start);
+  }
+  EXPECT_LE(gain, GetParam().allowed_gain);
+}
+
+// A stack of three cubes stands with all contacts and falls over with apparent ones (erratum 42).
+double worst_tilt(ContactTreatment contacts) {
+  model::Settings settings = test::thesis_settings(3, 0.01);
+  settings.impulse.contacts = contacts;
+  World world(settings);
+  world.set_default_material(test::surface_material(0.0, 0.5));
+  BodyDescription body;
+  body.shape = world.add_shape(test::make_generated("cube", 3));
+  body.mass = 1.0;
+  const double offset = test::CubeWorld::sphere_offset(3);
+  for (int k = 0; k < 3; ++k) {
+    // A shift of a fraction of a voxel; spheres of two faces meet later than sphere and plane.
+    body.com_position = Vec3(0.03 * k, 0, 0.5 + offset + k * (1.0 + 2.0 * offset));
+    world.add_body(body);
+  }
+  world.add_plane({});
+  world.run_until(2.0);
+  double worst = 0.0;
+  for (model::BodyIndex i = 0; i < 3; ++i) {
+    worst = std::max(worst, world.bodies().q_WB[i].angularDistance(Quat::Identity()));
+  }
+  return worst * 180.0 / M_PI;
+}
+
+TEST(Stack, StandsWithAllContactsAndTiltsWithApparentOnes) {
+  EXPECT_LE(worst_tilt(ContactTreatment::all), 1.0);
+  EXPECT_GE(worst_tilt(ContactTreatment::apparent), 3.0);
+}
+
+TEST(Bounce, BallFollowsTheGoldenBounces) {
+  // One voxel sphere (level 1) of the cube's ball: heights above its own level's rest height.
+  const nlohmann::json file = test::golden("dynamics.json");
+  for (const auto& golden : file["cases"]) {
+    if (golden["id"] != "bouncing_ball") continue;
+    const double dt = 1e-4;
+    test::CubeWorld scene(test::thesis_settings(1, dt), golden["inputs"]["e"], 0.0, 1.5);
+    const double rest = 0.5 + test::CubeWorld::sphere_offset(1);
+    std::vector<double> impacts;
+    std::vector<double> apexes;
+    double last_speed = 0.0;
+    while (impacts.size() < 6) {
+      scene.world.step();
+      const double speed = scene.velocity().z();
+      if (last_speed < 0.0 && speed > 0.0) impacts.push_back(scene.world.time());
+      if (last_speed > 0.0 && speed <= 0.0) apexes.push_back(scene.position().z() - rest + 0.5);
+      last_speed = speed;
+    }
+    const auto& expected = golden["expected"];
+    for (std::size_t k = 0; k < impacts.size(); ++k) {
+      EXPECT_NEAR(impacts[k], expected["impact_times"][k].get<double>(),
+                  2.0 * static_cast<double>(k + 1) * dt);
+    }
+    for (std::size_t k = 0; k < apexes.size(); ++k) {
+      EXPECT_NEAR(apexes[k], expected["apex_com_z"][k].get<double>(), 2.0 * 6.0 * dt);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gotai
