@@ -94,8 +94,7 @@ std::vector<Json> sweep(const Kind& kind, Effort effort) {
                           {"seed", seed},
                           {"steps", "by level"}});
   }
-  for (Json& point : points)
-    point["surface_reference"] = point["seed"].get<int>() <= surface_seeds;
+  for (Json& point : points) point["surface_reference"] = point["seed"].get<int>() <= surface_seeds;
   return points;
 }
 
