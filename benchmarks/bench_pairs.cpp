@@ -74,6 +74,7 @@ class Pair {
       bodies_.shape[body] = i;
       bodies_.p_MB[body] = shapes_[i]->mass.center_of_mass;
       bodies_.bounding_radius[body] = shapes_[i]->bounding_radius;
+      exact_.push_back(std::make_unique<const voxel::SignedDistance>(shapes_[i]->mesh));
     }
     place(1, {});
   }
@@ -81,7 +82,7 @@ class Pair {
                                 const collision::SearchOptions& options) {
     place(0, X_BA);
     contacts_.clear();
-    append_surface_contacts(bodies_, {0, 1}, shapes_, margin, options, scratch_, contacts_);
+    append_surface_contacts(bodies_, {0, 1}, shapes_, exact_, margin, options, scratch_, contacts_);
     return contacts_;
   }
 
@@ -92,6 +93,7 @@ class Pair {
   }
 
   std::vector<ShapePointer> shapes_;
+  std::vector<std::unique_ptr<const voxel::SignedDistance>> exact_;
   model::BodyState bodies_;
   model::ContactSet contacts_;
   collision::SurfaceScratch scratch_;
@@ -105,12 +107,12 @@ struct Figures {
 };
 
 Figures measure(Pair& pair, const std::vector<PairPose>& poses, bool touching, double margin,
-                int repeat) {
+                int repeat, model::ContactTreatment treatment) {
   Figures f;
   std::vector<double> angles;
   for (const PairPose& p : poses) {
     if (p.touches != touching) continue;
-    const model::ContactSet& contacts = pair.find(p.X_BA, 0.1, {});
+    const model::ContactSet& contacts = pair.find(p.X_BA, 0.1, {treatment, 0.0, {}});
     std::size_t deepest = 0;
     for (std::size_t c = 1; c < contacts.size(); ++c) {
       if (contacts.gap[c] < contacts.gap[deepest]) deepest = c;
@@ -157,13 +159,15 @@ void run(const std::string& folder, double margin, int repeat) {
       const ShapePointer shape_b = std::string(a) == b ? shape_a : prepare(folder, b, level);
       Pair pair(shape_a, shape_b);
       for (const bool touching : {true, false}) {
-        const Figures f = measure(pair, poses, touching, margin, repeat);
+        const Figures raw = measure(pair, poses, touching, margin, 1, model::ContactTreatment::all);
+        const Figures f =
+            measure(pair, poses, touching, margin, repeat, model::ContactTreatment::reduced);
         const Figures& before = previous[touching ? 0 : 1];
         fmt::print(
             "{:>7}-{:<7} L{} {:5}  gap rms {:.4f} mean {:+.4f} max {:.3f}  normal median "
             "{:5.2f} deg  {:6.2f} us  ({} poses)",
-            a, b, level, touching ? "touch" : "near", 100.0 * f.gap_rms, 100.0 * f.gap_mean,
-            100.0 * f.gap_max, f.normal_median, f.us, f.count);
+            a, b, level, touching ? "touch" : "near", 100.0 * f.gap_rms, 100.0 * raw.gap_rms,
+            100.0 * f.gap_mean, 100.0 * f.gap_max, f.normal_median, f.us, f.count);
         if (before.count > 0) {
           fmt::print("  orders: gap {:.2f} normal {:.2f}", std::log2(before.gap_rms / f.gap_rms),
                      std::log2(before.normal_median / std::max(1e-9, f.normal_median)));

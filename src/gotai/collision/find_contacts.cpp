@@ -11,6 +11,7 @@
 #include "gotai/collision/surface_contacts.h"
 #include "gotai/core/error.h"
 #include "gotai/core/parallel.h"
+#include "gotai/voxel/inside.h"
 
 namespace gotai::collision {
 
@@ -97,20 +98,35 @@ struct CollisionCache::Storage {
   // Per shape. The shapes are kept alive, so that a tree is known by its shape's address.
   std::vector<std::shared_ptr<const voxel::Shape>> shapes;
   std::vector<SphereTree> trees;
+  std::vector<std::unique_ptr<const voxel::SignedDistance>> exact;
+  std::vector<bool> has_exact;  // exact is what the shape allows
   std::vector<Chunk> chunks;
   tbb::enumerable_thread_specific<SphereScratch> scratch;
   tbb::enumerable_thread_specific<SurfaceScratch> surface_scratch;
 
-  void refresh_shapes(Shapes current, bool with_sphere_trees);
+  void refresh_shapes(Shapes current, bool with_sphere_trees, bool with_exact_surfaces);
   void refresh_radii(const model::BodyState& bodies, const model::CollisionSettings& settings);
 };
 
-void CollisionCache::Storage::refresh_shapes(Shapes current, bool with_sphere_trees) {
+void CollisionCache::Storage::refresh_shapes(Shapes current, bool with_sphere_trees,
+                                             bool with_exact_surfaces) {
   shapes.resize(current.size());
   trees.resize(current.size());
+  exact.resize(current.size());
+  has_exact.resize(current.size(), false);
   for (std::size_t s = 0; s < current.size(); ++s) {
-    if (shapes[s] != current[s]) trees[s] = {};
+    const voxel::Shape& shape = *current[s];
+    if (shapes[s] != current[s]) {
+      trees[s] = {};
+      has_exact[s] = false;
+    }
     shapes[s] = current[s];
+    // A shape with warnings has parts that only winding numbers tell apart.
+    if (with_exact_surfaces && !has_exact[s]) {
+      const bool is_simple = shape.warnings.empty() && voxel::has_closed_surface(shape.mesh);
+      exact[s] = is_simple ? std::make_unique<const voxel::SignedDistance>(shape.mesh) : nullptr;
+      has_exact[s] = true;
+    }
     if (with_sphere_trees && trees[s].pyramid == nullptr) {
       trees[s] = make_sphere_tree(current[s]->pyramid);
     }
@@ -145,7 +161,8 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
     check_levels(bodies, shapes, settings.level);
   }
   CollisionCache::Storage& storage = cache.storage();
-  storage.refresh_shapes(shapes, !surface);
+  storage.refresh_shapes(shapes, !surface,
+                         surface && options.contacts == model::ContactTreatment::reduced);
   storage.refresh_radii(bodies, settings);
   storage.broad_phase.find_pairs(bodies, storage.radius, margin, storage.candidates);
 
@@ -165,8 +182,8 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
       scratch.search.tests = 0;
       scratch.reduction_error = 0.0;
       for (std::size_t p = c * size; p < end; ++p) {
-        append_surface_contacts(bodies, storage.candidates[p], shapes, margin, options, scratch,
-                                chunk.contacts);
+        append_surface_contacts(bodies, storage.candidates[p], shapes, storage.exact, margin,
+                                options, scratch, chunk.contacts);
       }
       chunk.tests[0] = scratch.search.tests;
       chunk.reduction_error = scratch.reduction_error;

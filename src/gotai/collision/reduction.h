@@ -22,6 +22,7 @@ struct ContactCandidate {
   double area = 0.0;             ///< [m^2], > 0
   Vec3 share_A = Vec3::Zero();   ///< centre of the surface it stands for [m]; friction acts there
   model::FeatureKey feature = 0;
+  bool near_edge = false;  ///< the field is not smooth there: its distance is rounded
 };
 
 inline constexpr std::size_t kMaxReduced = 8;  ///< contacts kept per pair

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "gotai/collision/relative_pose.h"
@@ -115,6 +116,42 @@ class FieldContacts {
     for (const SurfaceHit& hit : scratch.search.hits) append(hit, motion, scratch.candidates);
   }
 
+  // Replaces the gap by the distance to Q's triangles. A sample of an edge first slides to where
+  // its edge is nearest, if that is between it and its neighbours: with flat faces on both sides of
+  // the nearest point, where the two lines of the distance along the edge cross.
+  void refine(const voxel::SignedDistance& exact, ContactCandidate& c) const {
+    const auto sample = static_cast<std::uint32_t>(c.feature);
+    const double cell = field_.field.cell;
+    const double limit = std::abs(c.gap) + 4.0 * cell;
+    const Vec3 own_P = sample_point(samples_, sample);
+    const std::int32_t edge = samples_.tree.edge[sample];
+    const Vec3 edge_P =
+        edge < 0 ? Vec3(Vec3::Zero())
+                 : to_double(samples_.tree.edge_direction[static_cast<std::size_t>(edge)]);
+    Slid best = slide(exact, own_P, edge_P, 0.0, limit);
+    if (edge >= 0 && std::isfinite(best.distance)) {
+      const auto& reach = samples_.tree.edge_reach[static_cast<std::size_t>(edge)];
+      const double far =
+          best.slope < 0.0 ? static_cast<double>(reach[1]) : -static_cast<double>(reach[0]);
+      const Slid end = slide(exact, own_P, edge_P, far, limit);
+      if (far != 0.0 && std::isfinite(end.distance) && end.slope * best.slope < 0.0) {
+        const double along =
+            (end.distance - end.slope * far - best.distance) / (best.slope - end.slope);
+        const Slid crossing = slide(exact, own_P, edge_P, along, limit);
+        if (std::abs(along) <= std::abs(far) && along * far >= 0.0 &&
+            crossing.distance < best.distance) {
+          best = crossing;
+        }
+      }
+    }
+    // Fields are never off by more: a larger difference means that the sides were mistaken.
+    if (!(std::abs(best.distance - c.gap) <= 3.0 * cell)) return;
+    c.gap = best.distance;
+    const Vec3 moved_P = own_P + best.along * edge_P;
+    c.point_A =
+        samples_of_b_ ? Vec3(X_QP_ * moved_P - p_MA_ + c.gap * c.normal_A) : Vec3(moved_P - p_MA_);
+  }
+
  private:
   void append(const SurfaceHit& hit, const PairMotion& motion,
               std::vector<ContactCandidate>& out) const {
@@ -138,7 +175,29 @@ class FieldContacts {
     }
     c.share_A = c.point_A;
     c.feature = surface_feature(samples_of_b_ ? 1 : 0, hit.sample);
+    // Where a field is smooth its slope is 1.
+    constexpr double kSmooth = 0.005;
+    c.near_edge = std::abs(length - 1.0) > kSmooth || samples_.tree.edge[hit.sample] >= 0;
     if (motion.may_close(c)) out.push_back(c);
+  }
+
+  // Distance of a sample of P to Q's triangles after sliding along its edge, and how it changes.
+  struct Slid {
+    double along = 0.0;  // [m]
+    double distance = std::numeric_limits<double>::infinity();
+    double slope = 0.0;  // of the distance along the edge
+  };
+  Slid slide(const voxel::SignedDistance& exact, const Vec3& own_P, const Vec3& edge_P,
+             double along, double limit) const {
+    const Vec3 x_Q = X_QP_ * (own_P + along * edge_P);
+    const voxel::ClosestPoint nearest = exact.query(x_Q, limit);
+    if (!std::isfinite(nearest.distance)) return {};
+    const Vec3 away = x_Q - nearest.point;
+    const double length = away.norm();
+    const Vec3 up = length > 1e-9 * limit
+                        ? Vec3(away * (std::copysign(1.0, nearest.distance) / length))
+                        : nearest.pseudonormal;
+    return {along, nearest.distance, up.dot(R_QP_ * edge_P)};
   }
 
   bool samples_of_b_;
@@ -237,6 +296,22 @@ std::span<const model::ContactMemory::Entry> remembered(
   return {range.begin(), range.end()};
 }
 
+// Gaps of the kept contacts of two shapes, measured to triangles where a field rounds.
+void refine_kept(const BodyState& bodies, const BodyPair& pair, Shapes shapes, ExactSurfaces exact,
+                 SurfaceScratch& scratch) {
+  const FieldContacts of_a(bodies, pair, shapes, false);
+  const FieldContacts of_b(bodies, pair, shapes, true);
+  const voxel::SignedDistance* exact_a = exact[bodies.shape[pair.body_a]].get();
+  const voxel::SignedDistance* exact_b = exact[bodies.shape[pair.body_b]].get();
+  for (const std::uint32_t k : scratch.reduction.kept) {
+    ContactCandidate& c = scratch.candidates[k];
+    if (!c.near_edge) continue;
+    const bool is_of_b = (c.feature >> 32U) != 0;
+    if (is_of_b && exact_a != nullptr) of_b.refine(*exact_a, c);
+    if (!is_of_b && exact_b != nullptr) of_a.refine(*exact_b, c);
+  }
+}
+
 void emit(const BodyState& bodies, const BodyPair& pair, const ContactCandidate& c,
           const Mat3& R_WA, const Mat3& R_WB, model::ContactSet& out) {
   const Vec3& x_A = bodies.x_W[pair.body_a];
@@ -272,8 +347,8 @@ Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, co
 }
 
 void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
-                             double margin, const SearchOptions& options, SurfaceScratch& scratch,
-                             model::ContactSet& out) {
+                             ExactSurfaces exact, double margin, const SearchOptions& options,
+                             SurfaceScratch& scratch, model::ContactSet& out) {
   const PairMotion motion(bodies, pair, options.dt);
   const double reach = motion.reach(margin);
   scratch.candidates.clear();
@@ -297,6 +372,9 @@ void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shap
     reduce_contacts(scratch.candidates, remembered(options.memory, pair),
                     {motion.size(), kDepthStep * motion.size()}, scratch.reduction);
     scratch.reduction_error = std::max(scratch.reduction_error, scratch.reduction.error);
+    if (!exact.empty() && bodies.geometry[pair.body_b] == model::Geometry::shape) {
+      refine_kept(bodies, pair, shapes, exact, scratch);
+    }
     for (const std::uint32_t k : scratch.reduction.kept) {
       emit(bodies, pair, scratch.candidates[k], R_WA, R_WB, out);
     }

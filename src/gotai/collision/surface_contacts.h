@@ -14,6 +14,7 @@
 #include "gotai/model/body_state.h"
 #include "gotai/model/contact_set.h"
 #include "gotai/voxel/shape.h"
+#include "gotai/voxel/signed_distance.h"
 
 namespace gotai::collision {
 
@@ -37,14 +38,21 @@ struct SurfaceScratch {
   double reduction_error = 0.0;  ///< largest Reduction::error so far
 };
 
+/// Exact distances to the surfaces of shapes, by BodyState::shape. Null where the shape's surface
+/// is not closed or overlaps itself: its field is all there is.
+using ExactSurfaces = std::span<const std::unique_ptr<const voxel::SignedDistance>>;
+
 /// Appends the contacts of one pair with a gap up to the margin; body_a has a shape, body_b a
 /// shape, a plane or a container. Contacts that cannot close within options.dt are left out. With
-/// options.contacts = reduced few remain, which stand for the others' areas.
+/// options.contacts = reduced few remain, which stand for the others' areas; of
+/// those, samples of edges slide along their edge to where it is nearest, and gaps near edges are
+/// measured to the triangles, since a field rounds them.
 /// @param shapes  indexed by BodyState::shape, with surface models
+/// @param exact   likewise; empty: gaps are the fields'
 /// @param margin  [m], >= 0
 void append_surface_contacts(const model::BodyState& bodies, const BodyPair& pair,
                              std::span<const std::shared_ptr<const voxel::Shape>> shapes,
-                             double margin, const SearchOptions& options, SurfaceScratch& scratch,
-                             model::ContactSet& out);
+                             ExactSurfaces exact, double margin, const SearchOptions& options,
+                             SurfaceScratch& scratch, model::ContactSet& out);
 
 }  // namespace gotai::collision
