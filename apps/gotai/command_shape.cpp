@@ -86,6 +86,11 @@ void add_shape_command(CLI::App& app, Action& action) {
       ->check(CLI::PositiveNumber);
   command->add_option("--size", shape.size, "Largest extent [m]; default: as in the file")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option(
+          "--thickness", shape.thickness,
+          "Make a solid of an open sheet, this thick [m]; a closed surface becomes a shell")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--seed", shape.generator.seed, "Seed of a generated rock");
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->add_flag("--json", options->json, "Print one JSON object on standard output");

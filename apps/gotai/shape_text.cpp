@@ -73,6 +73,8 @@ nlohmann::ordered_json to_json(const voxel::Shape& shape) {
       {"tetrahedra", shape.mesh.tetrahedra.size()},
       {"extents", array(geometry::bounding_box(shape.mesh).sizes())},
       {"volume", shape.mass.volume},
+      {"volume_error", shape.volume_error},
+      {"warnings", shape.warnings},
       {"center_of_mass", array(shape.mass.center_of_mass)},
       {"principal_moments_at_density_1", array(axes.moments)},
       {"bounding_radius", shape.bounding_radius},
@@ -99,7 +101,10 @@ void describe(const geometry::MeshReport& mesh, Report& report) {
   report.row("defects", list_defects(mesh));
   for (const std::string& repair : mesh.repairs) report.row("repaired", repair);
   for (const std::string& warning : mesh.warnings) report.row("warning", warning);
-  report.row("usable", mesh.is_solid() ? "yes" : "no: it encloses no volume; close the surface");
+  report.row("usable", mesh.is_solid()
+                           ? "yes"
+                           : "where it encloses a body: prepare it to see; a sheet needs "
+                             "a thickness");
 }
 
 void describe(const voxel::Shape& shape, Report& report) {
@@ -115,6 +120,7 @@ void describe(const voxel::Shape& shape, Report& report) {
   report.row("principal moments",
              fmt::format("{:.5g} {:.5g} {:.5g} kg m^2 at 1000 kg/m^3", 1e3 * axes.moments.x(),
                          1e3 * axes.moments.y(), 1e3 * axes.moments.z()));
+  for (const std::string& warning : shape.warnings) report.row("warning", warning);
   report.row("content", shape.content.hex());
   for (int h = 1; h <= shape.pyramid.max_level(); ++h) {
     report.row(

@@ -18,6 +18,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
+using testing::ThrowsMessage;
 
 const std::string kCube =
     "[collision]\nlevel = 3\n[shapes.cube]\ngenerate = \"cube\"\nprepared_level = 3\n";
@@ -92,6 +93,20 @@ TEST(BuildWorld, MeshFilesAreScaledAndTurned) {
   const Box3 box = geometry::bounding_box(shape.mesh);
   EXPECT_NEAR(box.sizes().x(), 2.0, 1e-12) << "80 mm became 2 m";
   EXPECT_NEAR(box.sizes().z(), 1.5, 1e-12) << "60 mm up the file's y";
+}
+
+TEST(BuildWorld, SheetsNeedAThickness) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.file("sheet.obj")) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+  const std::string text = "[shapes.a]\nmesh = \"sheet.obj\"\n[[bodies]]\nshape = \"a\"\n";
+  const auto prepare = [&](const std::string& thickness) {
+    return prepare_shape(
+        parse_scene(text, folder.file("scene.toml"), {"shapes.a.thickness=" + thickness})
+            .shapes[0]);
+  };
+  EXPECT_THAT([&] { prepare("0"); },
+              ThrowsMessage<FileError>(HasSubstr("give the thickness of the sheet")));
+  EXPECT_NEAR(prepare("0.1").mass.volume, 0.1, 1e-12);
 }
 
 TEST(BuildWorld, ErrorsNameThePlaceInTheScene) {

@@ -113,7 +113,8 @@ voxel::Shape prepare_shape(const ShapeDescription& description, const BuildOptio
     if (options.progress) options.progress(fmt::format("preparing shape {}", description.name));
     return voxel::make_shape_cached(description.name, std::move(mesh),
                                     {.prepared_level = description.prepared_level,
-                                     .surface_level = description.surface_level},
+                                     .surface_level = description.surface_level,
+                                     .thickness = description.thickness},
                                     options.cache_folder)
         .shape;
   });

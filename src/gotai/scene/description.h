@@ -27,6 +27,7 @@ struct ShapeDescription {
   geometry::GeneratorOptions generator;  ///< when mesh_path is ""; its size is applied by it
   geometry::LoadOptions load;            ///< files: unit, up axis, scale
   double size = 0.0;                     ///< files: largest extent after scaling [m]; 0 keeps it
+  double thickness = 0.0;                ///< files: makes a solid of a sheet [m]; 0: none
   int prepared_level = 7;                ///< M of the pyramid
   /// Level of the surface model; 0: none. By default the level of [collision] when its model is
   /// "surface".

@@ -72,6 +72,7 @@ ShapeDescription read_shape(const Entry& entry, SceneDescription& scene) {
     shape.load.unit = read_one_of(table, "unit", shape.load.unit, geometry::length_unit_names());
     shape.load.up = read_one_of(table, "up", shape.load.up, {"x", "y", "z"});
     shape.load.scale = table.number("scale", shape.load.scale, range::positive);
+    shape.thickness = table.number("thickness", 0.0, range::non_negative);
   } else {
     read_generator(table, shape);
   }
