@@ -13,10 +13,12 @@ namespace gotai::impulse {
 /// Reads every contact that touches, and those that come close within the step.
 /// Guarantees: no contact approaches afterwards (up to the residual, which is reported); every
 /// approaching contact separates with at least e times its speed; friction within the cone, opposed
-/// to sliding, never reversing it; no energy gain for one restitution per island; redundant
-/// contacts share the load evenly, by area; the same bits for any number of threads.
+/// to sliding, never reversing it; no energy gain without friction (at one restitution per island)
+/// or without restitution; redundant contacts share the load evenly, by area; the same bits for any
+/// number of threads.
 /// Does not: propagate shocks one after the other (Newton's cradle leaves with -1/3, 2/3, 2/3;
-/// erratum 48), nor undo overlap.
+/// erratum 48), nor undo overlap. An oblique impact with both friction and restitution can gain a
+/// little energy, as Newton's impact law does (Kane & Levinson 1985).
 class ConstraintMethod : public ImpulseMethod {
  public:
   explicit ConstraintMethod(const model::Settings& settings);
