@@ -1,7 +1,7 @@
 // Pair poses with exact answers: how far gap and normal of the deepest contact are off, by level,
-// with the orders of convergence, and the time of a pair (both directions, one thread).
+// with the orders of convergence, and the processor time of a pair (both directions).
 //
-//   bench_pairs FOLDER [--margin 0.01] [--repeat 5]
+//   bench_pairs FOLDER [--margin 0.01] [--repeat 5] [--level 6]
 //
 // FOLDER holds the meshes and A_B.csv: kind,px,py,pz,qw,qx,qy,qz,gap,cx,cy,cz,nx,ny,nz with the
 // pose of A's mesh frame in B's, lengths in fractions of the largest extent.
@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <limits>
 #include <memory>
@@ -20,7 +22,6 @@
 
 #include "gotai/collision/surface_contacts.h"
 #include "gotai/core/error.h"
-#include "gotai/core/stopwatch.h"
 #include "gotai/geometry/load_mesh.h"
 
 namespace {
@@ -102,7 +103,7 @@ class Pair {
 struct Figures {
   double gap_rms = 0.0, gap_mean = 0.0, gap_max = 0.0;  // fractions of the extent
   double normal_median = 0.0;                           // [degrees]
-  double us = 0.0;
+  double us = 0.0;                                      // processor time per pair
   int count = 0;
 };
 
@@ -134,19 +135,20 @@ Figures measure(Pair& pair, const std::vector<PairPose>& poses, bool touching, d
   f.us = std::numeric_limits<double>::infinity();
   const collision::SearchOptions reduced{model::ContactTreatment::reduced, 0.0, {}};
   for (int k = 0; k < repeat; ++k) {
-    Stopwatch clock;
+    const std::clock_t start = std::clock();
     int pairs = 0;
     for (const PairPose& p : poses) {
       if (p.touches != touching) continue;
       pair.find(p.X_BA, margin, reduced);
       ++pairs;
     }
-    f.us = std::min(f.us, 1e6 * clock.seconds() / pairs);
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    f.us = std::min(f.us, 1e6 * seconds / pairs);
   }
   return f;
 }
 
-void run(const std::string& folder, double margin, int repeat) {
+void run(const std::string& folder, double margin, int repeat, const std::vector<int>& levels) {
   const std::array<std::array<const char*, 2>, 4> pairs = {
       {{"hexapod", "hexapod"}, {"hexapod", "rock"}, {"rock", "rock"}, {"torus", "torus"}}};
   fmt::print("gap errors in % of the extent; time with reduced contacts up to a gap of {}\n",
@@ -154,7 +156,7 @@ void run(const std::string& folder, double margin, int repeat) {
   for (const auto& [a, b] : pairs) {
     const std::vector<PairPose> poses = read_poses(fmt::format("{}/{}_{}.csv", folder, a, b));
     std::array<Figures, 2> previous;
-    for (const int level : {5, 6, 7}) {
+    for (const int level : levels) {
       const ShapePointer shape_a = prepare(folder, a, level);
       const ShapePointer shape_b = std::string(a) == b ? shape_a : prepare(folder, b, level);
       Pair pair(shape_a, shape_b);
@@ -164,8 +166,8 @@ void run(const std::string& folder, double margin, int repeat) {
             measure(pair, poses, touching, margin, repeat, model::ContactTreatment::reduced);
         const Figures& before = previous[touching ? 0 : 1];
         fmt::print(
-            "{:>7}-{:<7} L{} {:5}  gap rms {:.4f} mean {:+.4f} max {:.3f}  normal median "
-            "{:5.2f} deg  {:6.2f} us  ({} poses)",
+            "{:>7}-{:<7} L{} {:5}  gap rms {:.4f} (field alone {:.4f}) mean {:+.4f} max {:.3f}  "
+            "normal median {:5.2f} deg  {:6.2f} us  ({} poses)",
             a, b, level, touching ? "touch" : "near", 100.0 * f.gap_rms, 100.0 * raw.gap_rms,
             100.0 * f.gap_mean, 100.0 * f.gap_max, f.normal_median, f.us, f.count);
         if (before.count > 0) {
@@ -173,6 +175,7 @@ void run(const std::string& folder, double margin, int repeat) {
                      std::log2(before.normal_median / std::max(1e-9, f.normal_median)));
         }
         fmt::print("\n");
+        std::fflush(stdout);
         previous[touching ? 0 : 1] = f;
       }
       if (level == 6) {
@@ -187,14 +190,18 @@ void run(const std::string& folder, double margin, int repeat) {
 
 int main(int argc, char** argv) {
   try {
-    if (argc < 2) throw InvalidArgument("arguments", "none", "bench_pairs FOLDER [--margin M]");
+    if (argc < 2)
+      throw InvalidArgument("arguments", "none",
+                            "bench_pairs FOLDER [--margin M] [--repeat R] [--level L]");
     double margin = 0.01;
     int repeat = 5;
+    std::vector<int> levels = {5, 6, 7};
     for (int i = 2; i + 1 < argc; i += 2) {
       if (std::string(argv[i]) == "--margin") margin = std::stod(argv[i + 1]);
       if (std::string(argv[i]) == "--repeat") repeat = std::stoi(argv[i + 1]);
+      if (std::string(argv[i]) == "--level") levels = {std::stoi(argv[i + 1])};
     }
-    run(argv[1], margin, repeat);
+    run(argv[1], margin, repeat, levels);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;
