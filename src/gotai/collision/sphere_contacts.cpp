@@ -49,6 +49,7 @@ void append_shape_contacts(const BodyState& bodies, const BodyPair& pair,
     const Vec3 n_B = coincident ? Vec3(R_WB.transpose() * fallback_normal(bodies, pair))
                                 : Vec3(between / overlap.distance);
     out.point_W[i] = X_WB.p + R_WB * (c_B + (r_B / (r_A + r_B)) * between);
+    out.friction_W[i] = out.point_W[i];
     out.normal_W[i] = R_WB * n_B;
     // Without coincidence between . n is the distance; with it, the little that is left.
     out.gap[i] = (coincident ? between.dot(n_B) : overlap.distance) - (r_A + r_B);
