@@ -62,13 +62,17 @@ TEST(Resume, CtrlCSaysHowToGoOn) {
 TEST(Resume, MakesARunLonger) {
   const TemporaryFolder folder;
   const std::string scene = write_text(folder, "scene.toml", kTwoCubes);
-  const std::string path = folder.file("run.h5");
-  ASSERT_EQ(run_gotai({"run", scene, "-o", path}).exit_code, 0);
-  const Outcome longer =
-      run_gotai({"run", "--resume", path, "--json", "--set", "world.duration=0.8"});
-  EXPECT_NEAR(longer.json().at("simulated_s").get<double>(), 0.3, 1e-9);
-  const Outcome whole = run_gotai({"run", scene, "--json", "--set", "world.duration=0.8"});
-  EXPECT_EQ(state_hash(longer), state_hash(whole));
+  for (const std::string model : {"spheres", "surface"}) {
+    const std::string setting = "collision.model=" + model;
+    const std::string path = folder.file(model + ".h5");
+    ASSERT_EQ(run_gotai({"run", scene, "-o", path, "--set", setting}).exit_code, 0);
+    const Outcome longer =
+        run_gotai({"run", "--resume", path, "--json", "--set", "world.duration=0.8"});
+    EXPECT_NEAR(longer.json().at("simulated_s").get<double>(), 0.3, 1e-9);
+    const Outcome whole =
+        run_gotai({"run", scene, "--json", "--set", setting, "--set", "world.duration=0.8"});
+    EXPECT_EQ(state_hash(longer), state_hash(whole)) << model;
+  }
 }
 
 TEST(Resume, MistakesSayWhatToDo) {
