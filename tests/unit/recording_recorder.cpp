@@ -51,6 +51,7 @@ TEST(Recorder, WhatIsReadIsWhatWasRecorded) {
     recorder.finish(world, "{\"steps\": 100}");
   }
   const RecordingReader recording(path);
+  EXPECT_THAT(recording.version(), testing::MatchesRegex("[0-9]+.[0-9]+.[0-9]+"));
   EXPECT_EQ(recording.scene_text(), "[world]\n");
   EXPECT_EQ(recording.overrides(), kScene.overrides);
   EXPECT_EQ(recording.certificate(), "{\"steps\": 100}");

@@ -98,6 +98,7 @@ const std::vector<Table>& step_tables() {
 void write_start(Hdf5File& file, const World& world, const SceneSource& scene,
                  const RecorderOptions& options) {
   file.write_text("/format", kFormat);
+  file.write_text("/version", GOTAI_VERSION);
   // Absolute: resuming may happen in another folder.
   file.write_text("/scene/path",
                   scene.path.empty() ? "" : std::filesystem::absolute(scene.path).string());

@@ -107,7 +107,7 @@ struct RecordingReader::State {
   explicit State(const std::string& path) : file(Hdf5File::read(path)) {}
 
   Hdf5File file;
-  std::string scene_path, scene_text, settings, certificate;
+  std::string version, scene_path, scene_text, settings, certificate;
   std::vector<std::string> overrides;
   double fps = 0.0;
   std::vector<model::Material> materials;
@@ -125,6 +125,7 @@ RecordingReader::RecordingReader(const std::string& path) : state_(std::make_uni
     throw FileError(
         path, fmt::format("is a \"{:.40}\"; this program reads \"{}\"", format, layout::kFormat));
   }
+  s.version = file.read_text("/version");
   s.scene_path = file.read_text("/scene/path");
   s.scene_text = file.read_text("/scene/text");
   s.overrides = lines_of(file.read_text("/scene/overrides"));
@@ -143,6 +144,7 @@ RecordingReader::~RecordingReader() = default;
 RecordingReader::RecordingReader(RecordingReader&&) noexcept = default;
 
 const std::string& RecordingReader::path() const { return state_->file.path(); }
+const std::string& RecordingReader::version() const { return state_->version; }
 const std::string& RecordingReader::scene_path() const { return state_->scene_path; }
 const std::string& RecordingReader::scene_text() const { return state_->scene_text; }
 const std::vector<std::string>& RecordingReader::overrides() const { return state_->overrides; }

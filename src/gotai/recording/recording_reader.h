@@ -81,6 +81,8 @@ class RecordingReader {
   RecordingReader(RecordingReader&&) noexcept;
 
   const std::string& path() const;
+  /// Of the program that recorded.
+  const std::string& version() const;
   const std::string& scene_path() const;
   const std::string& scene_text() const;
   const std::vector<std::string>& overrides() const;
