@@ -15,6 +15,7 @@
 #include "gotai/core/stopwatch.h"
 #include "gotai/recording/recorder.h"
 #include "gotai/recording/recording_reader.h"
+#include "gotai/view/live_server.h"
 #include "gotai/world/run_summary.h"
 #include "interrupt.h"
 #include "output_file.h"
@@ -28,16 +29,19 @@ constexpr const char* kFooter = R"(Examples:
   gotai run scene.toml -o run.h5
   gotai run scene.toml -o run.h5 --set impulse.method=penalty --set world.duration=2
   gotai run scene.toml --json --threads 1          only the figures, nothing is recorded
+  gotai run scene.toml --live                      watch it in the browser while it runs
   gotai run --resume run.h5                        go on with an interrupted run, bit for bit
   gotai run --resume run.h5 --set world.duration=9 the same, and longer
 Ctrl-C finishes the step and closes the recording; what was flushed survives even kill -9.
-`gotai info run.h5` and `gotai export run.h5 -o run.glb` go on from there.)";
+Go on with `gotai view run.h5 --open`, `gotai info run.h5` or `gotai export run.h5 -o run.glb`.)";
 
 struct RunOptions {
   SceneOptions scene;
   std::string output;
   std::string resumed;  ///< recording to go on with; "" for a new run
   bool force = false;
+  bool live = false;
+  int port = 0;
 };
 
 std::string progress_text(const World& world, double duration, const model::StepReport& report,
@@ -85,15 +89,31 @@ OpenedScene reopen_scene(const RunOptions& options) {
                      true);
 }
 
+std::unique_ptr<view::LiveServer> start_live_view(const RunOptions& options,
+                                                  const scene::SceneDescription& scene,
+                                                  const World& world) {
+  if (!options.live) return nullptr;
+  auto live = std::make_unique<view::LiveServer>(
+      world, std::filesystem::path(scene.path).stem().string(), "gotai " GOTAI_VERSION,
+      view::LiveServer::Options{.port = options.port, .fps = scene.record.fps});
+  print_error(fmt::format("live at {} until the run ends", live->address()));
+  return live;
+}
+
 // Steps to the end or the interruption.
 void simulate(World& world, double duration, RunMonitor& monitor,
-              std::optional<recording::Recorder>& recorder, const InterruptGuard& guard,
-              const Stopwatch& watch) {
+              std::optional<recording::Recorder>& recorder, view::LiveServer* live,
+              const InterruptGuard& guard, const Stopwatch& watch) {
   ProgressLine progress;
   while (!world.has_reached(duration) && !guard.is_interrupted()) {
+    if (live != nullptr) {
+      live->wait_while_paused([&guard] { return guard.is_interrupted(); });
+      if (guard.is_interrupted()) break;
+    }
     const model::StepReport report = world.step();
     monitor.on_step(world, report);
     if (recorder) recorder->on_step(world, report);
+    if (live != nullptr) live->on_step(world, report);
     if (progress.is_due()) {
       progress.show(progress_text(world, duration, report, watch.seconds()));
     }
@@ -119,11 +139,14 @@ int run_scene(const RunOptions& options) {
 
   const InterruptGuard guard;
   std::optional<recording::Recorder> recorder = open_recorder(options, scene.description, world);
+  const std::unique_ptr<view::LiveServer> live = start_live_view(options, scene.description, world);
   const Stopwatch watch;
   RunMonitor monitor(world);
-  simulate(world, scene.description.duration, monitor, recorder, guard, watch);
+  simulate(world, scene.description.duration, monitor, recorder, live.get(), guard, watch);
   const RunSummary summary = monitor.summary(world, watch.seconds());
   if (recorder) recorder->finish(world, to_json(summary).dump());
+  // Open pages fetch the last frames; nobody is waited for after an interruption.
+  if (live) live->finish(guard.is_interrupted() ? 0.0 : 5.0);
 
   if (options.scene.json) {
     print(to_json(summary).dump() + "\n");
@@ -150,6 +173,12 @@ void add_run_command(CLI::App& app, Action& action) {
                    "Recording to write (HDF5); without it nothing is recorded")
       ->type_name("OUT.h5");
   command->add_flag("--force", options->force, "Overwrite an existing output");
+  CLI::Option* live = command->add_flag(
+      "--live", options->live, "Show the simulation in a browser of this machine while it runs");
+  command->add_option("--port", options->port, "Port of the live view; 0 takes any free one")
+      ->needs(live)
+      ->check(CLI::Range(0, 65535))
+      ->type_name("PORT");
   CLI::Option* scene = command->get_option("SCENE")->required(false);
   command
       ->add_option("--resume", options->resumed,

@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kFooter = R"(Start here:
   gotai check examples/hexapods.toml                    is the scene right, and what will it cost?
   gotai run examples/hexapods.toml -o hexapods.h5       simulate and record
+  gotai view hexapods.h5 --open                         watch it in the browser
   gotai info hexapods.h5                                what is in the recording
   gotai export hexapods.h5 -o hexapods.glb              an animation for Blender and other tools
   gotai experiment fall                                 a figure of the thesis, with what must come out
@@ -50,6 +51,8 @@ int run(int argc, char** argv) {
   add_run_command(app, action);
   add_compare_command(app, action);
   add_info_command(app, action);
+  add_view_command(app, action);
+  add_render_command(app, action);
   add_export_command(app, action);
   add_experiment_command(app, action);
 

@@ -11,14 +11,14 @@ using testing::HasSubstr;
 TEST(Help, ListsEveryCommandAndTheExitCodes) {
   const Outcome outcome = run_gotai({"--help"});
   EXPECT_EQ(outcome.exit_code, 0);
-  for (const char* command : {"shape", "check", "run", "info", "export"}) {
+  for (const char* command : {"shape", "check", "run", "view", "render", "info", "export"}) {
     EXPECT_THAT(outcome.out, HasSubstr(std::string("\n  ") + command + " ")) << command;
   }
   EXPECT_THAT(outcome.out, HasSubstr("Exit codes"));
 }
 
 TEST(Help, EveryCommandExplainsItselfWithExamples) {
-  for (const std::string command : {"shape", "check", "run", "info", "export"}) {
+  for (const std::string command : {"shape", "check", "run", "view", "render", "info", "export"}) {
     const Outcome outcome = run_gotai({command, "--help"});
     EXPECT_EQ(outcome.exit_code, 0) << command;
     EXPECT_THAT(outcome.out, HasSubstr("Examples:\n  gotai " + command)) << command;

@@ -119,4 +119,3 @@ export async function connect(onFrame: () => void, onEnd: () => void): Promise<L
     step: () => command("step"),
   };
 }
-
