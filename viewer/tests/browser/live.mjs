@@ -14,9 +14,9 @@ const [gotai, scene] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), "gotai-live-"));
 const recording = join(folder, "run.h5");
 
-/** Starts a run that lasts long; gives the process and the address that it prints. */
+/** Starts a run of small steps, which is slow enough to be watched; gives the process and the address that it prints. */
 function startRun() {
-  const process = spawn(gotai, ["run", scene, "--set", "world.duration=1000", "-o", recording, "--live"]);
+  const process = spawn(gotai, ["run", scene, "--set", "world.duration=1000", "--set", "time.step=2e-5", "-o", recording, "--live"]);
   const ended = new Promise((done) => process.on("exit", done));
   const address = new Promise((done, failed) => {
     let text = "";
