@@ -218,7 +218,7 @@ TEST(SurfaceContacts, OfACubeOnAPlaneCarryItsFaceExactly) {
     EXPECT_NEAR((contacts.normal_W[c] - up).norm(), 0.0, 1e-12);
     area += contacts.area[c];
   }
-  EXPECT_NEAR(area, 1.0, 0.15);  // edge samples also stand for strips of the sides
+  EXPECT_NEAR(area, 1.0, 0.01);
 }
 
 TEST(SurfaceContacts, OfTwoCubesFaceToFaceHaveTheFacesNormalEverywhere) {

@@ -306,7 +306,7 @@ TEST(SurfaceModel, StaysSmallAndIsTheSameEveryTime) {
   const SurfaceModel again = make_surface_model(mesh, 6);
   EXPECT_EQ(model.field.values, again.field.values);
   EXPECT_EQ(model.field.coarse, again.field.coarse);
-  EXPECT_EQ(model.tree.area, again.tree.area);
+  EXPECT_EQ(model.tree.vector_area, again.tree.vector_area);
   EXPECT_EQ(model.tree.normal, again.tree.normal);
 }
 

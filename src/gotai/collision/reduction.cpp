@@ -19,7 +19,11 @@ class Chooser {
       : candidates_(candidates), scale_(scale), reduction_(reduction) {
     reduction_.kept.clear();
     reduction_.distance.assign(candidates.size(), std::numeric_limits<double>::infinity());
+    reduction_.likeness.assign(candidates.size(), std::numeric_limits<double>::infinity());
     reduction_.nearest.assign(candidates.size(), 0);
+    for (std::uint32_t i = 1; i < candidates.size(); ++i) {
+      if (candidates[i].gap < candidates[deepest_].gap) deepest_ = i;
+    }
   }
 
   void keep(std::uint32_t chosen) {
@@ -27,12 +31,15 @@ class Chooser {
     reduction_.kept.push_back(chosen);
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
       const double d = squared_distance(candidates_[i], candidates_[chosen], 1.0 / scale_.length);
-      if (d < reduction_.distance[i]) {
-        reduction_.distance[i] = d;
+      const double likeness = d + squared_reaches(candidates_[i].gap - candidates_[chosen].gap);
+      reduction_.distance[i] = std::min(reduction_.distance[i], d);
+      if (likeness < reduction_.likeness[i]) {
+        reduction_.likeness[i] = likeness;
         reduction_.nearest[i] = position;
       }
     }
     reduction_.distance[chosen] = -1.0;
+    reduction_.likeness[chosen] = -1.0;
     reduction_.nearest[chosen] = position;
   }
 
@@ -62,31 +69,33 @@ class Chooser {
   }
 
   void keep_deepest() {
-    std::uint32_t deepest = 0;
-    for (std::uint32_t i = 1; i < candidates_.size(); ++i) {
-      if (candidates_[i].gap < candidates_[deepest].gap) deepest = i;
-    }
     double kept_gap = std::numeric_limits<double>::infinity();
     for (const std::uint32_t k : reduction_.kept) {
       kept_gap = std::min(kept_gap, candidates_[k].gap);
     }
-    if (candidates_[deepest].gap < kept_gap - scale_.depth_step && !is_kept(deepest)) {
-      keep(deepest);
+    if (candidates_[deepest_].gap < kept_gap - scale_.depth_step && !is_kept(deepest_)) {
+      keep(deepest_);
     }
   }
 
   void keep_farthest() {
     for (;;) {
       std::uint32_t farthest = 0;
-      for (std::uint32_t i = 1; i < candidates_.size(); ++i) {
-        if (reduction_.distance[i] > reduction_.distance[farthest]) farthest = i;
+      double most_wanted = -1.0;
+      double largest = 0.0;
+      for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
+        const double squared = reduction_.distance[i];
+        largest = std::max(largest, squared);
+        if (squared <= scale_.resolution * scale_.resolution) continue;
+        const double wanted =
+            squared / (1.0 + squared_reaches(candidates_[i].gap - candidates_[deepest_].gap));
+        if (wanted > most_wanted) {
+          most_wanted = wanted;
+          farthest = i;
+        }
       }
-      const double squared = std::max(0.0, reduction_.distance[farthest]);
-      reduction_.error = std::sqrt(squared);
-      if (reduction_.kept.size() >= kMaxReduced ||
-          squared <= scale_.resolution * scale_.resolution) {
-        return;
-      }
+      reduction_.error = std::sqrt(largest);
+      if (reduction_.kept.size() >= kMaxReduced || most_wanted < 0.0) return;
       keep(farthest);
     }
   }
@@ -113,6 +122,11 @@ class Chooser {
   }
 
  private:
+  double squared_reaches(double gap_difference) const {
+    const double reaches = gap_difference / scale_.reach;
+    return reaches * reaches;
+  }
+
   // Mean distance of the area from its centre, which friction against spinning acts on under even
   // pressure [m].
   template <typename Place>
@@ -151,6 +165,7 @@ class Chooser {
   std::span<ContactCandidate> candidates_;
   const ReductionScale& scale_;
   Reduction& reduction_;
+  std::uint32_t deepest_ = 0;
   Vec3 centre_ = Vec3::Zero();  // of the area that lever_arm() looked at last
 };
 

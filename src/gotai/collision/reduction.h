@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,8 @@ struct ReductionScale {
   double length = 1.0;       ///< of the smaller body [m]: moments are counted in units of it
   double depth_step = 0.0;   ///< a deeper contact replaces remembered ones only beyond this [m]
   double resolution = 0.02;  ///< wrenches nearer than this are one (dimensionless)
+  /// Contacts whose gaps differ by more than this do not carry at the same time [m].
+  double reach = std::numeric_limits<double>::infinity();
 };
 
 /// Storage of a reduction.
@@ -42,13 +45,15 @@ struct Reduction {
   /// that is kept: the error of any load is at most this times the sum of its impulses.
   double error = 0.0;
   std::vector<double> distance;        // squared, to the nearest kept wrench
-  std::vector<std::uint32_t> nearest;  // its position in `kept`
+  std::vector<double> likeness;        // squared distance of wrench and gap to `nearest`
+  std::vector<std::uint32_t> nearest;  // position in `kept` of the one most alike
 };
 
 /// Chooses at most kMaxReduced candidates: those that carried the largest impulses in the last step
 /// (at most kMaxRemembered), the deepest, then again and again the one whose wrench is farthest
-/// from all that were chosen. The others give their area to the nearest chosen one, whose share
-/// becomes the centre of that area. Ties go to the smaller index, so the choice is stable.
+/// from all that were chosen, where those that are farther from touching count less. The others
+/// give their area to the chosen one that is most alike in wrench and gap, whose share becomes the
+/// centre of that area. Ties go to the smaller index, so the choice is stable.
 /// @param[in,out] candidates  ascending by feature; area and share_A of kept ones are updated,
 ///                            the areas of others become 0
 /// @param remembered          the pair's entries of the last step, ascending by feature

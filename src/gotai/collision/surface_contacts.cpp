@@ -23,9 +23,10 @@ Vec3 sample_point(const voxel::SurfaceModel& model, std::uint32_t sample) {
   return model.center + Vec3(packet.x[lane], packet.y[lane], packet.z[lane]);
 }
 
-// Never zero, so that areas can weigh.
-double sample_area(const voxel::SurfaceModel& model, std::uint32_t sample) {
-  return std::max(static_cast<double>(model.tree.area[sample]),
+// The part of a sample's surface that faces the other body, which lies in direction `toward` (unit,
+// the sample's frame) [m^2]. Never zero, so that areas can weigh.
+double facing_area(const voxel::SurfaceModel& model, std::uint32_t sample, const Vec3& toward) {
+  return std::max(to_double(model.tree.vector_area[sample]).dot(toward),
                   1e-3 * model.spacing * model.spacing);
 }
 
@@ -164,7 +165,7 @@ class FieldContacts {
     if (d_P.isZero()) return;
     ContactCandidate c;
     c.gap = hit.distance;
-    c.area = sample_area(samples_, hit.sample);
+    c.area = facing_area(samples_, hit.sample, d_P);
     const Vec3 own_P = sample_point(samples_, hit.sample);
     if (samples_of_b_) {
       c.normal_A = R_QP_ * d_P;
@@ -272,7 +273,7 @@ class FaceContacts {
       if (!acts(X_UA_ * x_A)) continue;
       c.point_A = x_A - bodies_.p_MB[a_];
       c.normal_A = n_A;
-      c.area = sample_area(model_, hit.sample);
+      c.area = facing_area(model_, hit.sample, -n_A);
       c.share_A = c.point_A;
       c.feature = surface_feature(index, hit.sample);
       if (motion.may_close(c)) scratch.candidates.push_back(c);
@@ -341,7 +342,9 @@ Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, co
   }
   const double along_axis = d.dot(axis);
   if (along_axis >= cosine) return d;
-  if (along_axis <= -sine) return Vec3::Zero();  // more than 90 degrees from every normal
+  // More than 89 degrees from every normal: the surface lies along the other body, not against it.
+  constexpr double kGrazing = 0.0175;
+  if (along_axis <= kGrazing - sine) return Vec3::Zero();
   const Vec3 across = d - along_axis * axis;
   return cosine * axis + (sine / across.norm()) * across;
 }
@@ -370,7 +373,10 @@ void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shap
   const Mat3 R_WB = bodies.q_WB[pair.body_b].toRotationMatrix();
   if (options.contacts == model::ContactTreatment::reduced) {
     reduce_contacts(scratch.candidates, remembered(options.memory, pair),
-                    {motion.size(), kDepthStep * motion.size()}, scratch.reduction);
+                    {.length = motion.size(),
+                     .depth_step = kDepthStep * motion.size(),
+                     .reach = kRestReach * motion.size()},
+                    scratch.reduction);
     scratch.reduction_error = std::max(scratch.reduction_error, scratch.reduction.error);
     if (!exact.empty() && bodies.geometry[pair.body_b] == model::Geometry::shape) {
       refine_kept(bodies, pair, shapes, exact, scratch);

@@ -35,12 +35,13 @@ double row_bias(double v, double v_star, double gap, double restitution, double 
 
 Mat3 inertia_scale(const Mat3& inverse_I_W) { return inverse_I_W.llt().matrixL(); }
 
-Jacobian mass_scaled_jacobian(const Mat3& frame, const Vec3& arm_W, double inverse_mass,
-                              const Mat3& scale, double sign) {
+Jacobian mass_scaled_jacobian(const Mat3& frame, const Vec3& arm_W, const Vec3& friction_arm_W,
+                              double inverse_mass, const Mat3& scale, double sign) {
   Jacobian J;
   J.leftCols<3>() = sign * std::sqrt(inverse_mass) * frame.transpose();
   for (int row = 0; row < 3; ++row) {
-    J.block<1, 3>(row, 3) = sign * arm_W.cross(frame.col(row)).transpose() * scale;
+    const Vec3& arm = row == 0 ? arm_W : friction_arm_W;
+    J.block<1, 3>(row, 3) = sign * arm.cross(frame.col(row)).transpose() * scale;
   }
   return J;
 }
@@ -70,6 +71,7 @@ void assemble(const model::BodyState& bodies, const model::ContactSet& contacts,
     const auto block = static_cast<std::uint32_t>(at - island.bodies.begin());
     problem.couplings.push_back(
         {block, mass_scaled_jacobian(frame.back(), contacts.point_W[i] - bodies.x_W[body],
+                                     contacts.friction_W[i] - bodies.x_W[body],
                                      bodies.inverse_mass[body], scale[block], sign)});
   };
   problem.patch.push_back(0);
@@ -89,9 +91,13 @@ void assemble(const model::BodyState& bodies, const model::ContactSet& contacts,
       // bias.
       for (const model::BodyIndex body : {pair.body_a, pair.body_b}) {
         if (bodies.is_dynamic(body)) continue;
-        const Vec3 velocity =
-            bodies.v_W[body] + bodies.w_W[body].cross(contacts.point_W[i] - bodies.x_W[body]);
-        bias += (body == pair.body_a ? 1.0 : -1.0) * (frame.back().transpose() * velocity);
+        const double sign = body == pair.body_a ? 1.0 : -1.0;
+        const auto velocity = [&](const Vec3& at_W) {
+          return Vec3(bodies.v_W[body] + bodies.w_W[body].cross(at_W - bodies.x_W[body]));
+        };
+        bias.x() += sign * frame.back().col(0).dot(velocity(contacts.point_W[i]));
+        bias.tail<2>() +=
+            sign * (frame.back().rightCols<2>().transpose() * velocity(contacts.friction_W[i]));
       }
       problem.bias.push_back(bias);
       problem.friction.push_back(targets.friction[i]);

@@ -51,6 +51,11 @@ void IslandSolver::solve(const model::BodyState& bodies, const ContactTargets& t
         const Vec3 impulse = work.frame[row] * work.solution.p[row];
         update.contact_impulse[i] += impulse;
         add_impulse(bodies, pair, contacts_->point_W[i], impulse, update);
+        // Friction acts elsewhere when the contact stands for others.
+        const Vec3 friction = impulse - work.frame[row].col(0) * work.solution.p[row].x();
+        const Vec3 moment = (contacts_->friction_W[i] - contacts_->point_W[i]).cross(friction);
+        if (bodies.is_dynamic(pair.body_a)) update.delta_L[pair.body_a] += moment;
+        if (bodies.is_dynamic(pair.body_b)) update.delta_L[pair.body_b] -= moment;
       }
     }
     report_.rows += static_cast<std::uint32_t>(row);

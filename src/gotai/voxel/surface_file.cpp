@@ -20,8 +20,9 @@ bool all_finite(const std::vector<float>& values) {
 // A search visits packet p of each height below lane p of the next.
 bool has_right_sizes(const SurfaceTree& tree) {
   const std::size_t n = tree.size();
-  if (n == 0 || tree.normal.size() != n || tree.cone_cosine.size() != n || tree.kind.size() != n ||
-      tree.edge.size() != n || tree.edge_reach.size() != tree.edge_direction.size() ||
+  if (n == 0 || tree.vector_area.size() != n || tree.cone_cosine.size() != n ||
+      tree.kind.size() != n || tree.edge.size() != n ||
+      tree.edge_reach.size() != tree.edge_direction.size() ||
       tree.points.size() != (n + kLanes - 1) / kLanes || tree.heights.empty()) {
     return false;
   }
@@ -53,8 +54,8 @@ bool is_possible(const SurfaceTree& tree) {
     if (!std::all_of(packets.begin(), packets.end(), finite)) return false;
   }
   return std::all_of(tree.points.begin(), tree.points.end(), finite) && all_finite(tree.normal) &&
-         all_finite(tree.cone_cosine) && all_finite(tree.area) && all_finite(tree.edge_direction) &&
-         all_finite(tree.edge_reach);
+         all_finite(tree.cone_cosine) && all_finite(tree.vector_area) &&
+         all_finite(tree.edge_direction) && all_finite(tree.edge_reach);
 }
 
 bool is_possible(const DistanceField& field) {
@@ -83,7 +84,7 @@ void encode_tree(ByteWriter& out, const SurfaceTree& tree) {
   for (const auto& packets : tree.heights) out.array(packets);
   out.array(tree.normal);
   out.array(tree.cone_cosine);
-  out.array(tree.area);
+  out.array(tree.vector_area);
   out.array(tree.kind);
   out.array(tree.edge_direction);
   out.array(tree.edge_reach);
@@ -98,7 +99,7 @@ SurfaceTree decode_tree(ByteReader& in) {
   for (std::uint32_t h = 0; h < heights; ++h) tree.heights.push_back(in.array<SpherePacket>());
   tree.normal = in.array<std::array<float, 3>>();
   tree.cone_cosine = in.array<float>();
-  tree.area = in.array<float>();
+  tree.vector_area = in.array<std::array<float, 3>>();
   tree.kind = in.array<SampleKind>();
   tree.edge_direction = in.array<std::array<float, 3>>();
   tree.edge_reach = in.array<std::array<float, 2>>();

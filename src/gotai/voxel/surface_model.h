@@ -35,16 +35,16 @@ struct SurfaceTree {
   std::vector<PointPacket> points;                 ///< the last one is padded with its last sample
   std::vector<std::vector<SpherePacket>> heights;  ///< heights[0] bounds packets of points
   // Per sample, in tree order. Frame S.
-  std::vector<std::array<float, 3>> normal;  ///< axis of the normal cone, unit, outward
-  std::vector<float> cone_cosine;            ///< cosine of the cone's half angle
-  std::vector<float> area;                   ///< [m^2]
-  std::vector<SampleKind> kind;              ///< face, edge or corner
+  std::vector<std::array<float, 3>> normal;       ///< axis of the normal cone, unit, outward
+  std::vector<float> cone_cosine;                 ///< cosine of the cone's half angle
+  std::vector<std::array<float, 3>> vector_area;  ///< integral of the outward normal [m^2]
+  std::vector<SampleKind> kind;                   ///< face, edge or corner
   std::vector<std::array<float, 3>>
       edge_direction;                            ///< unit; of samples [0, edge_count)... see edge
   std::vector<std::array<float, 2>> edge_reach;  ///< back, forward [m]; likewise
   std::vector<std::int32_t> edge;                ///< index into edge_*; -1 for other kinds
 
-  std::size_t size() const { return area.size(); }
+  std::size_t size() const { return normal.size(); }
   std::size_t bytes() const;
 };
 

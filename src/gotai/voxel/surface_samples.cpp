@@ -326,16 +326,14 @@ class Sampler {
   }
 
   void finish() {
-    std::vector<Vec3> normal(samples_.size(), Vec3::Zero());
     for (std::size_t d = 0; d < dense_.size(); ++d) {
       samples_[owner_[d]].area += dense_[d].area;
-      normal[owner_[d]] += dense_[d].area * dense_[d].normal;
+      samples_[owner_[d]].vector_area += dense_[d].area * dense_[d].normal;
     }
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      SurfaceSample& s = samples_[i];
-      if (s.kind != SampleKind::face || normal[i].norm() < 0.1 * s.area) continue;
+    for (SurfaceSample& s : samples_) {
+      if (s.kind != SampleKind::face || s.vector_area.norm() < 0.1 * s.area) continue;
       if (s.area > 0.0) {
-        s.normal = normal[i].normalized();
+        s.normal = s.vector_area.normalized();
         s.cone_cosine = 1.0;
       }
     }

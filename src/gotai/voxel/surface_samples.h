@@ -20,6 +20,10 @@ struct SurfaceSample {
   Vec3 normal = Vec3::Zero();
   double cone_cosine = 1.0;  ///< cosine of the cone's half angle: 1 on a flat face
   double area = 0.0;         ///< of the surface nearest to this sample [m^2]; all sum to the total
+  /// The same as a vector, the integral of the outward normal [m^2]: its component along a
+  /// direction is the area seen from there. Samples of edges stand for strips of two faces, of
+  /// which a body that lies on one face meets only one.
+  Vec3 vector_area = Vec3::Zero();
   SampleKind kind = SampleKind::face;
   Vec3 edge_direction = Vec3::Zero();  ///< unit, of edge samples; zero for others
   /// How far the sample may slide against and along edge_direction before it leaves the straight

@@ -93,8 +93,8 @@ std::size_t SurfaceTree::bytes() const {
   std::size_t total = points.size() * sizeof(PointPacket);
   for (const auto& packets : heights) total += packets.size() * sizeof(SpherePacket);
   total += normal.size() * sizeof(normal[0]) + cone_cosine.size() * sizeof(float) +
-           area.size() * sizeof(float) + kind.size() + edge.size() * sizeof(edge[0]) +
-           edge_direction.size() * sizeof(edge_direction[0]) +
+           vector_area.size() * sizeof(vector_area[0]) + kind.size() +
+           edge.size() * sizeof(edge[0]) + edge_direction.size() * sizeof(edge_direction[0]) +
            edge_reach.size() * sizeof(edge_reach[0]);
   return total;
 }
@@ -120,7 +120,7 @@ SurfaceTree make_surface_tree(const std::vector<SurfaceSample>& samples, const V
     const SurfaceSample& s = samples[i];
     tree.normal.push_back(to_floats(s.normal));
     tree.cone_cosine.push_back(static_cast<float>(s.cone_cosine));
-    tree.area.push_back(static_cast<float>(s.area));
+    tree.vector_area.push_back(to_floats(s.vector_area));
     tree.kind.push_back(s.kind);
     tree.edge.push_back(-1);
     if (s.kind == SampleKind::edge) {
