@@ -10,7 +10,9 @@ target_compile_options(gotai_options INTERFACE
   $<$<BOOL:${GOTAI_WARNINGS_AS_ERRORS}>:$<BUILD_INTERFACE:-Werror>>)
 if(GOTAI_SANITIZE)
   target_compile_options(gotai_options INTERFACE
-    $<BUILD_INTERFACE:-fsanitize=${GOTAI_SANITIZE};-fno-omit-frame-pointer;-fno-sanitize-recover=all>)
+    $<BUILD_INTERFACE:-fsanitize=${GOTAI_SANITIZE};-fno-omit-frame-pointer;-fno-sanitize-recover=all>
+    # With sanitizers GCC 12 takes the standard library's own variables for uninitialised ones.
+    $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-maybe-uninitialized>>)
   target_link_options(gotai_options INTERFACE $<BUILD_INTERFACE:-fsanitize=${GOTAI_SANITIZE}>)
 endif()
 install(TARGETS gotai_options EXPORT gotaiTargets)

@@ -80,6 +80,8 @@ nlohmann::ordered_json to_json(const OpenedScene& scene, const Findings& finding
       {"preparation_s", findings.preparation_s},
       {"memory_bytes", findings.memory_bytes},
       {"frames", findings.frames},
+      {"repairs", scene.built.repairs},
+      {"warnings", scene.built.warnings},
       {"overlaps", nlohmann::ordered_json::array()},
   };
   for (const scene::InitialOverlap& overlap : scene.built.overlaps) {
@@ -122,6 +124,8 @@ std::string to_text(const OpenedScene& scene, const Findings& findings) {
                                format_duration(findings.wall_s), format_duration(findings.trial_s))
                  : format_duration(findings.wall_s));
   report.row("memory", format_bytes(findings.memory_bytes));
+  for (const std::string& repair : scene.built.repairs) report.row("repaired", repair);
+  for (const std::string& warning : scene.built.warnings) report.row("warning", warning);
   if (scene.built.overlaps.empty()) {
     report.row("overlaps", "none at the start");
   } else {

@@ -40,17 +40,20 @@ int make_shape(ShapeOptions options) {
 
   shape.generator.size = shape.size;
   const Stopwatch watch;
-  const voxel::Shape prepared = scene::prepare_shape(shape);
+  scene::PreparedShape prepared = scene::prepare_shape(shape);
   const double seconds = watch.seconds();
-  voxel::write_shape(options.output, prepared);
+  voxel::write_shape(options.output, prepared.shape);
+  prepared.shape.warnings = prepared.warnings;  // shown with those of the mesh
   if (options.json) {
-    nlohmann::ordered_json json = to_json(prepared);
+    nlohmann::ordered_json json = to_json(prepared.shape);
+    json["repairs"] = prepared.repairs;
     json["prepared_s"] = seconds;
     print(json.dump() + "\n");
     return kSuccess;
   }
   Report report;
-  describe(prepared, report);
+  describe(prepared.shape, report);
+  for (const std::string& repair : prepared.repairs) report.row("repaired", repair);
   report.row("prepared in", format_duration(seconds));
   print(report.text() + fmt::format("written to {}\n", options.output));
   return kSuccess;

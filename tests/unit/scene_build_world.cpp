@@ -89,7 +89,7 @@ TEST(BuildWorld, MeshFilesAreScaledAndTurned) {
       "[shapes.part]\nmesh = \"" + path + "\"\nunit = \"mm\"\nup = \"y\"\nprepared_level = 6\n" +
           "[[bodies]]\nshape = \"part\"\n",
       "scene.toml", {"shapes.part.size=2"});
-  const voxel::Shape shape = prepare_shape(scene.shapes[0]);
+  const voxel::Shape shape = prepare_shape(scene.shapes[0]).shape;
   const Box3 box = geometry::bounding_box(shape.mesh);
   EXPECT_NEAR(box.sizes().x(), 2.0, 1e-12) << "80 mm became 2 m";
   EXPECT_NEAR(box.sizes().z(), 1.5, 1e-12) << "60 mm up the file's y";
@@ -106,7 +106,24 @@ TEST(BuildWorld, SheetsNeedAThickness) {
   };
   EXPECT_THAT([&] { prepare("0"); },
               ThrowsMessage<FileError>(HasSubstr("give the thickness of the sheet")));
-  EXPECT_NEAR(prepare("0.1").mass.volume, 0.1, 1e-12);
+  EXPECT_NEAR(prepare("0.1").shape.mass.volume, 0.1, 1e-12);
+}
+
+TEST(BuildWorld, SaysWhatItMadeOfAnImperfectMesh) {
+  const test::TemporaryFolder folder;
+  // A cube whose lid has a hole, with a triangle without area.
+  std::ofstream(folder.file("cube.obj"))
+      << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv .5 .5 1\n"
+         "f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 9\nf 6 7 9\nf 7 8 9\n"
+         "f 1 1 2\n";
+  const BuiltScene built =
+      build_world(parse_scene("[shapes.box]\nmesh = \"cube.obj\"\nprepared_level = 5\n[[bodies]]\n"
+                              "shape = \"box\"\n",
+                              folder.file("scene.toml"), {"collision.level=4"}));
+  EXPECT_THAT(built.repairs, testing::ElementsAre(HasSubstr("shape box: ")));
+  EXPECT_THAT(built.warnings, testing::Contains(HasSubstr("3 edges have one face (holes)")));
+  EXPECT_THAT(built.warnings, testing::Contains(HasSubstr("counted in voxels")));
+  EXPECT_THAT(built.warnings, testing::Each(StartsWith("shape box: ")));
 }
 
 TEST(BuildWorld, ErrorsNameThePlaceInTheScene) {

@@ -293,8 +293,9 @@ std::span<const model::ContactMemory::Entry> remembered(
   const auto key = [](const model::ContactMemory::Entry& e) {
     return std::pair(e.body_a, e.body_b);
   };
-  const auto range = std::ranges::equal_range(memory, std::pair(pair.body_a, pair.body_b), {}, key);
-  return {range.begin(), range.end()};
+  const std::pair bodies(pair.body_a, pair.body_b);
+  const auto begin = std::ranges::lower_bound(memory, bodies, {}, key);
+  return {begin, std::ranges::upper_bound(begin, memory.end(), bodies, {}, key)};
 }
 
 // Gaps of the kept contacts of two shapes, measured to triangles where a field rounds.

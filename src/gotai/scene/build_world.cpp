@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "gotai/core/error.h"
 #include "gotai/scene/pose_file.h"
@@ -20,6 +21,12 @@ auto located(const Location& where, const Action& action) {
   } catch (const InvalidArgument& error) {
     fail(where, error.what());
   }
+}
+
+/// Adds sentences, each behind `prefix`.
+void append(std::vector<std::string>& all, const std::vector<std::string>& sentences,
+            const std::string& prefix = "") {
+  for (const std::string& sentence : sentences) all.push_back(prefix + sentence);
 }
 
 void scale_to(geometry::Mesh& mesh, double size) {
@@ -101,22 +108,30 @@ void add_pours(const SceneDescription& scene, World& world) {
 
 }  // namespace
 
-voxel::Shape prepare_shape(const ShapeDescription& description, const BuildOptions& options) {
+PreparedShape prepare_shape(const ShapeDescription& description, const BuildOptions& options) {
   return located(description.where, [&] {
+    PreparedShape prepared;
     geometry::Mesh mesh;
     if (description.mesh_path.empty()) {
       mesh = geometry::generate(description.generator);
     } else {
-      mesh = geometry::load_mesh(description.mesh_path, description.load).mesh;
+      geometry::LoadedMesh loaded = geometry::load_mesh(description.mesh_path, description.load);
+      mesh = std::move(loaded.mesh);
+      prepared.repairs = std::move(loaded.report.repairs);
+      prepared.warnings = std::move(loaded.report.warnings);
       if (description.size > 0.0) scale_to(mesh, description.size);
     }
     if (options.progress) options.progress(fmt::format("preparing shape {}", description.name));
-    return voxel::make_shape_cached(description.name, std::move(mesh),
-                                    {.prepared_level = description.prepared_level,
-                                     .surface_level = description.surface_level,
-                                     .thickness = description.thickness},
-                                    options.cache_folder)
-        .shape;
+    voxel::CachedShape cached =
+        voxel::make_shape_cached(description.name, std::move(mesh),
+                                 {.prepared_level = description.prepared_level,
+                                  .surface_level = description.surface_level,
+                                  .thickness = description.thickness},
+                                 options.cache_folder);
+    prepared.shape = std::move(cached.shape);
+    append(prepared.warnings, prepared.shape.warnings);
+    if (!cached.warning.empty()) prepared.warnings.push_back(std::move(cached.warning));
+    return prepared;
   });
 }
 
@@ -155,8 +170,11 @@ BuiltScene build_world(const SceneDescription& scene, const BuildOptions& option
     world.set_material_pair(pair.first, pair.second, surface);
   }
   for (const ShapeDescription& shape : scene.shapes) {
-    auto prepared = std::make_shared<const voxel::Shape>(prepare_shape(shape, options));
-    located(shape.where, [&] { return world.add_shape(prepared); });
+    PreparedShape prepared = prepare_shape(shape, options);
+    append(built.repairs, prepared.repairs, "shape " + shape.name + ": ");
+    append(built.warnings, prepared.warnings, "shape " + shape.name + ": ");
+    const auto shared = std::make_shared<const voxel::Shape>(std::move(prepared.shape));
+    located(shape.where, [&] { return world.add_shape(shared); });
   }
   add_surroundings(scene, world);
   add_bodies(scene, world);

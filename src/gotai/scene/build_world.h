@@ -33,10 +33,20 @@ struct BuildOptions {
   bool refuse_overlaps = true;
 };
 
+/// A shape that is ready, and what happened to its mesh on the way, one sentence each.
+struct PreparedShape {
+  voxel::Shape shape;
+  std::vector<std::string> repairs;   ///< what was changed in the mesh
+  std::vector<std::string> warnings;  ///< what is odd about the mesh, what was assumed, and why the
+                                      ///< cache could not be used
+};
+
 /// A world that is ready to step, and what was noticed on the way.
 struct BuiltScene {
   std::unique_ptr<World> world;
   std::vector<InitialOverlap> overlaps;  ///< deepest first
+  std::vector<std::string> repairs;      ///< of all shapes, as "shape NAME: sentence"
+  std::vector<std::string> warnings;     ///< likewise
 };
 
 /// @throws FileError naming the place in the scene for shapes that cannot be prepared, bodies that
@@ -44,7 +54,7 @@ struct BuiltScene {
 BuiltScene build_world(const SceneDescription& scene, const BuildOptions& options = {});
 
 /// The shape that a scene asks for, without a world.
-voxel::Shape prepare_shape(const ShapeDescription& description, const BuildOptions& options = {});
+PreparedShape prepare_shape(const ShapeDescription& description, const BuildOptions& options = {});
 
 /// Overlaps of a world's present poses, deepest first.
 std::vector<InitialOverlap> find_overlaps(const World& world);
