@@ -15,8 +15,12 @@
 #include "gotai/collision/surface_search.h"
 #include "gotai/collision/surface_search_bounds.h"
 
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
+#else
 #pragma GCC push_options
 #pragma GCC target("avx2")
+#endif
 
 #define GOTAI_KERNEL avx2
 #define GOTAI_INLINE inline __attribute__((always_inline))
@@ -57,6 +61,10 @@ void search_half_space_avx2(const voxel::SurfaceTree& samples, const std::array<
 
 }  // namespace gotai::collision
 
+#ifdef __clang__
+#pragma clang attribute pop
+#else
 #pragma GCC pop_options
+#endif
 
 #endif
