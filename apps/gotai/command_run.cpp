@@ -136,13 +136,20 @@ int run_scene(const RunOptions& options) {
   OpenedScene scene =
       options.resumed.empty() ? open_scene(options.scene, true) : reopen_scene(options);
   World& world = *scene.built.world;
+  for (const std::string& warning : scene.built.warnings) print_error("warning: " + warning);
 
   const InterruptGuard guard;
   std::optional<recording::Recorder> recorder = open_recorder(options, scene.description, world);
   const std::unique_ptr<view::LiveServer> live = start_live_view(options, scene.description, world);
   const Stopwatch watch;
   RunMonitor monitor(world);
-  simulate(world, scene.description.duration, monitor, recorder, live.get(), guard, watch);
+  try {
+    simulate(world, scene.description.duration, monitor, recorder, live.get(), guard, watch);
+  } catch (const SimulationError& error) {
+    if (!recorder) throw;
+    throw SimulationError(std::string(error.what()) + "; the state before it is kept in " +
+                          recorder->path());
+  }
   const RunSummary summary = monitor.summary(world, watch.seconds());
   if (recorder) recorder->finish(world, to_json(summary).dump());
   // Open pages fetch the last frames; nobody is waited for after an interruption.

@@ -15,7 +15,8 @@ namespace gotai::recording {
 namespace {
 
 constexpr double kTimeSlack = 1e-9;  // frames: 0.01 + 0.01 + .. misses multiples by round-off
-constexpr std::size_t kMostPending = std::size_t{8} << 20;  // numbers kept before a flush
+// Numbers kept before a flush: a few MB, so that little is lost when a disk fills up.
+constexpr std::size_t kMostPending = std::size_t{1} << 19;
 
 /// Rows that are not in the file yet.
 struct Pending {
