@@ -115,6 +115,19 @@ TEST(Substepped, AStackStandsAndEnergyOnlyFalls) {
   EXPECT_LT(world.bodies().v_W[4].norm(), 0.1);  // sphere normals are bumpy: it never quite rests
 }
 
+TEST(Substepped, FreeFallKeepsTheEnergyOfItsSubSteps) {
+  World world = floor_world(0.2, 0.5, 1.0 / 60.0);
+  add_cube(world, world.add_shape(shape_of("cube")), Vec3(0, 0, 20), Vec3(1, 0, 2), Vec3(1, 2, 3));
+  const double initial = world.step().energy.total();
+  double largest = 0.0;
+  for (int k = 0; k < 60; ++k) {
+    const model::StepReport report = world.step();
+    largest = std::max(largest, std::abs(report.energy.total() - initial));
+    EXPECT_EQ(report.energy.total(), world.energy().total());
+  }
+  EXPECT_LT(largest, 1e-10 * initial);
+}
+
 TEST(Substepped, SameBitsForOneAndTwoThreadsAndTwice) {
   const auto run = [](int threads) {
     const ThreadLimit limit(threads);

@@ -153,6 +153,20 @@ class FieldContacts {
         samples_of_b_ ? Vec3(X_QP_ * moved_P - p_MA_ + c.gap * c.normal_A) : Vec3(moved_P - p_MA_);
   }
 
+  // Replaces the gap by the distance of the sample itself to Q's triangles, for contacts that push
+  // in a step. Following edges and faces would be exact for one pose, but their nearest points and
+  // normals jump as bodies rock, and piles never rest (of 500 hexapods 492 kept moving, at 3e-3
+  // m/s).
+  void refine_in_place(const voxel::SignedDistance& exact, ContactCandidate& c) const {
+    const auto sample = static_cast<std::uint32_t>(c.feature);
+    const double cell = field_.field.cell;
+    const Vec3 own_P = sample_point(samples_, sample);
+    const double distance = exact.query(X_QP_ * own_P, std::abs(c.gap) + 4.0 * cell).distance;
+    if (!(std::abs(distance - c.gap) <= 3.0 * cell)) return;
+    c.gap = distance;
+    if (samples_of_b_) c.point_A = X_QP_ * own_P - p_MA_ + c.gap * c.normal_A;
+  }
+
  private:
   void append(const SurfaceHit& hit, const PairMotion& motion,
               std::vector<ContactCandidate>& out) const {
@@ -298,19 +312,25 @@ std::span<const model::ContactMemory::Entry> remembered(
   return {begin, std::ranges::upper_bound(begin, memory.end(), bodies, {}, key)};
 }
 
-// Gaps of the kept contacts of two shapes, measured to triangles where a field rounds.
+// Gaps of the kept contacts of two shapes, measured to triangles: where a field rounds, or in a
+// step for all of them, so that no gap jumps when the field's smoothness does.
 void refine_kept(const BodyState& bodies, const BodyPair& pair, Shapes shapes, ExactSurfaces exact,
-                 SurfaceScratch& scratch) {
+                 bool in_step, SurfaceScratch& scratch) {
   const FieldContacts of_a(bodies, pair, shapes, false);
   const FieldContacts of_b(bodies, pair, shapes, true);
   const voxel::SignedDistance* exact_a = exact[bodies.shape[pair.body_a]].get();
   const voxel::SignedDistance* exact_b = exact[bodies.shape[pair.body_b]].get();
   for (const std::uint32_t k : scratch.reduction.kept) {
     ContactCandidate& c = scratch.candidates[k];
-    if (!c.near_edge) continue;
     const bool is_of_b = (c.feature >> 32U) != 0;
-    if (is_of_b && exact_a != nullptr) of_b.refine(*exact_a, c);
-    if (!is_of_b && exact_b != nullptr) of_a.refine(*exact_b, c);
+    const FieldContacts& field = is_of_b ? of_b : of_a;
+    const voxel::SignedDistance* surface = is_of_b ? exact_a : exact_b;
+    if (surface == nullptr) continue;
+    if (in_step) {
+      field.refine_in_place(*surface, c);
+    } else if (c.near_edge) {
+      field.refine(*surface, c);
+    }
   }
 }
 
@@ -380,7 +400,7 @@ void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shap
                     scratch.reduction);
     scratch.reduction_error = std::max(scratch.reduction_error, scratch.reduction.error);
     if (!exact.empty() && bodies.geometry[pair.body_b] == model::Geometry::shape) {
-      refine_kept(bodies, pair, shapes, exact, scratch);
+      refine_kept(bodies, pair, shapes, exact, options.dt > 0.0, scratch);
     }
     for (const std::uint32_t k : scratch.reduction.kept) {
       emit(bodies, pair, scratch.candidates[k], R_WA, R_WB, out);

@@ -49,7 +49,9 @@ class SubsteppedConstraint final : public ImpulseMethod {
   void load_warm_start(const model::ContactMemory& memory);
   /// Moves the warm start of each pair towards the impulses of equal wrench that press evenly, by
   /// area: redundant contacts share the load, as under a uniform tiny compliance (erratum 23).
-  void share_loads();
+  /// Only of pairs that slide: there pressure decides the torque of friction. At rest it would
+  /// disturb what the solver has found, and piles would creep.
+  void share_loads(const model::BodyState& bodies);
   void read_velocities(const model::BodyState& bodies);
   void write_changes(const model::BodyState& bodies, model::Update& update) const;
 

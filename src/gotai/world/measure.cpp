@@ -5,9 +5,9 @@
 namespace gotai {
 
 model::Energy measure_energy(const model::BodyState& bodies, const model::Settings& settings,
-                             double last_dt) {
+                             double h) {
   const bool semi_implicit = settings.time.integrator == model::Integrator::semi_implicit;
-  const double correction_factor = (semi_implicit ? 0.5 : -0.5) * last_dt;
+  const double correction_factor = (semi_implicit ? 0.5 : -0.5) * h;
   model::Energy energy;
   for (model::BodyIndex i = 0; i < bodies.size(); ++i) {
     if (!bodies.is_dynamic(i)) continue;

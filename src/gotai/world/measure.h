@@ -10,9 +10,10 @@
 namespace gotai {
 
 /// Energy of the dynamic bodies [J]. The correction term makes the total of the scheme exact in
-/// free flight: + 1/2 dt sum m g.v for semi-implicit Euler, - for explicit Euler.
+/// free flight: + 1/2 h sum m g.v for semi-implicit Euler, - for explicit Euler.
+/// @param h  size of the last sub-step [s]
 model::Energy measure_energy(const model::BodyState& bodies, const model::Settings& settings,
-                             double last_dt);
+                             double h);
 
 /// Fills the contact figures of a report: pairs, contacts, overlaps.
 void measure_contacts(const model::ContactSet& contacts, model::StepReport& report);

@@ -96,14 +96,15 @@ void RunMonitor::on_step(const World& world, const model::StepReport& report) {
   overlap_sum_ += report.mean_overlap * report.contacts;
   totals_.residual_max = std::max(totals_.residual_max, report.solve.residual);
 
-  // The correction before the step refers to this step's size, not to the last one's.
-  const double before = energy_.kinetic + energy_.potential + energy_.correction * report.dt;
+  // The correction before the step refers to this step's sub-steps, not to the last one's.
+  const double h = report.dt / report.solve.substeps;
+  const double before = energy_.kinetic + energy_.potential + energy_.correction * h;
   if (totals_.steps == 1) totals_.energy.initial = before;
   energy_change_ += report.energy.total() - before;
   lowest_change_ = std::min(lowest_change_, energy_change_);
   totals_.energy.max_gain = std::max(totals_.energy.max_gain, energy_change_ - lowest_change_);
   energy_ = report.energy;
-  energy_.correction /= report.dt;
+  energy_.correction /= h;
 
   const Vec3 momentum = world.momentum();
   const Vec3 gravity_impulse = dynamic_mass(world.bodies()) * report.dt * world.settings().gravity;

@@ -82,7 +82,7 @@ class RunMonitor {
  private:
   RunSummary totals_;  // sums, to be divided by the number of steps
   double start_time_ = 0.0;
-  model::Energy energy_;        // after the last step; its correction is per second of step size
+  model::Energy energy_;        // after the last step; its correction is per second of sub-step
   double energy_change_ = 0.0;  // since the start [J]
   double lowest_change_ = 0.0;
   double overlap_sum_ = 0.0;

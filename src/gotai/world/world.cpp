@@ -58,7 +58,7 @@ model::StepReport World::step() {
   report.time = time_;
   report.tests = search.tests;
   report.solve = method_->report();
-  report.energy = energy();
+  report.energy = measure_energy(bodies_, settings_, plan.substep_dt());
   measure_contacts(contacts_, report);
   report.other_s += clock.lap();
   for (const Observer& observer : observers_) observer(*this, report);

@@ -7,7 +7,9 @@
 
 namespace gotai {
 
-model::Energy World::energy() const { return measure_energy(bodies_, settings_, last_dt_); }
+model::Energy World::energy() const {
+  return measure_energy(bodies_, settings_, method_->plan(bodies_, last_dt_).substep_dt());
+}
 
 Vec3 World::momentum() const {
   Vec3 sum = Vec3::Zero();

@@ -1,0 +1,65 @@
+// The pile workload: copies of a mesh fall into an open-top container and come to rest.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gotai/core/types.h"
+#include "gotai/geometry/mesh.h"
+#include "gotai/model/settings.h"
+#include "gotai/world/true_overlap.h"
+#include "gotai/world/world.h"
+
+namespace gotai::pile {
+
+struct Options {
+  std::string folder, mesh;
+  int bodies = 0;
+  double seconds = 5.0;
+  int level = 6;
+  int threads = 1;
+  bool compare_ode = false;
+  bool verbose = false;
+  model::ContactTreatment contacts = model::ContactTreatment::reduced;
+};
+
+constexpr double kStep = 1.0 / 60.0;
+constexpr double kDensity = 1000.0;
+constexpr double kFriction = 0.5;
+constexpr double kRestitution = 0.2;
+
+// What falls, and where.
+struct Pile {
+  geometry::Mesh mesh;
+  Vec3 inner = Vec3::Zero();  // of the container: two edges and the height [m]
+  std::vector<Pose> poses;    // of the mesh frame
+};
+
+/// @throws FileError naming the file that is missing or not a pile
+Pile read_pile(const Options& options);
+
+// Processor time, which means something on a busy machine; of all threads.
+double cpu_seconds();
+
+// How one engine did.
+struct Result {
+  std::string engine;
+  double ms_per_step = 0.0, ms_last_second = 0.0, ms_worst = 0.0;  // processor time
+  double contacts = 0.0;                                           // mean per step
+  double rms_speed = 0.0;                                          // at the end [m/s]
+  double energy_gain = 0.0;  // highest above the initial energy, as a fraction of it
+  std::vector<Pose> poses;   // at the end, of the mesh frame
+  // Judged from the poses:
+  TrueOverlap overlap;
+  int linked = 0;   // pairs of rings that are linked though they started apart
+  int escaped = 0;  // centres of mass outside the container's walls or floor
+};
+
+Result run_gotai(const Options& options, const Pile& pile);
+Result run_ode(const Options& options, const Pile& pile);
+bool has_ode();
+
+// Fills what follows from the final poses.
+void judge(const Pile& pile, Result& result);
+
+}  // namespace gotai::pile
