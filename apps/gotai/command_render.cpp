@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* kFooter = R"(Examples:
   gotai render run.h5 -o last.png                          the end of the run
   gotai render run.h5 -o start.png --time 0.5 --size 1920x1080 --samples 4
-  gotai render run.h5 -o strip.png --strip 5               five moments side by side
+  gotai render run.h5 -o strip.png --strip 5 --end 2       five moments of the first 2 s side by side
   gotai render run.h5 -o run.mp4 --speed 0.25              a film in slow motion (needs ffmpeg)
   gotai render run.h5 -o frames/                           one picture for each moment of the film
 No screen is needed.)";
@@ -39,6 +39,8 @@ struct RenderCommand {
   std::string colour;
   std::vector<double> from{0.62, -1.0, 0.5};
   std::optional<double> time;
+  std::optional<double> begin;
+  std::optional<double> end;
   int strip = 0;
   double fps = 0.0;
   double speed = 1.0;
@@ -46,6 +48,8 @@ struct RenderCommand {
   int samples = 2;
   int threads = 0;
   bool force = false;
+
+  bool is_single_picture() const { return strip == 0 && output.ends_with(".png"); }
 };
 
 std::pair<int, int> parse_size(const std::string& text) {
@@ -82,11 +86,21 @@ class Studio {
     options_ = {width, height, command.samples};
     const Vec3 from(command.from[0], command.from[1], command.from[2]);
     if (!(from.norm() > 0.0)) throw InvalidArgument("--from", "0 0 0", "must be a direction");
+    frame_what_is_shown(command);
     camera_ =
         render::frame_camera(extent_, from, static_cast<double>(width) / height, command.zoom);
     renderer_ = std::make_unique<render::Renderer>(recorded_.run, options_);
   }
 
+  /// The part of the run that films and strips show [s].
+  std::pair<double, double> span(const RenderCommand& command) const {
+    const double begin = command.begin.value_or(times().front());
+    const double end = command.end.value_or(times().back());
+    if (begin > end)
+      throw InvalidArgument("--begin", fmt::format("{:g}", begin),
+                            fmt::format("must not be after the end, {:g} s", end));
+    return {begin, end};
+  }
   const std::vector<double>& times() const { return recorded_.frames.times; }
   const render::RenderOptions& options() const { return options_; }
 
@@ -98,6 +112,22 @@ class Studio {
   }
 
  private:
+  /// A single picture frames its own moment; films and strips have one camera for all of theirs.
+  /// Colours keep the scales of the whole run.
+  void frame_what_is_shown(const RenderCommand& command) {
+    constexpr int kMoments = 24;
+    const double moment = command.time.value_or(times().back());
+    const auto [begin, end] =
+        command.is_single_picture() ? std::pair(moment, moment) : span(command);
+    std::vector<view::FrameView> shown;
+    for (int k = 0; k < (begin < end ? kMoments : 1); ++k)
+      shown.push_back(
+          render::moment_at(recorded_.frames, begin + (end - begin) * k / (kMoments - 1)));
+    const render::ColourScales scales = extent_.scales;
+    extent_ = render::measure(recorded_.run, shown);
+    extent_.scales = scales;
+  }
+
   view::RecordedRun recorded_;
   render::Extent extent_;
   render::ColourMode colours_;
@@ -107,12 +137,11 @@ class Studio {
 };
 
 void draw_picture(Studio& studio, const RenderCommand& command) {
-  const double first = studio.times().front();
-  const double last = studio.times().back();
   if (command.strip == 0) {
-    render::write_png(command.output, studio.draw(command.time.value_or(last)));
+    render::write_png(command.output, studio.draw(command.time.value_or(studio.times().back())));
     return;
   }
+  const auto [first, last] = studio.span(command);
   std::vector<render::Picture> parts;
   for (int k = 0; k < command.strip; ++k)
     parts.push_back(studio.draw(first + (last - first) * k / std::max(1, command.strip - 1)));
@@ -122,8 +151,8 @@ void draw_picture(Studio& studio, const RenderCommand& command) {
 /// Calls use(picture, number) for every picture of the film.
 template <typename Use>
 std::size_t draw_film(Studio& studio, const RenderCommand& command, double fps, const Use& use) {
-  const double first = studio.times().front();
-  const double length = (studio.times().back() - first) / command.speed;
+  const auto [first, last] = studio.span(command);
+  const double length = (last - first) / command.speed;
   const auto count = static_cast<std::size_t>(std::floor(length * fps + 1e-6)) + 1;
   ProgressLine progress;
   const Stopwatch watch;
@@ -207,6 +236,8 @@ void add_render_command(CLI::App& app, Action& action) {
       ->required();
   command->add_option("--size", options->size, "Pixels")->type_name("WxH")->capture_default_str();
   command->add_option("--time", options->time, "Moment of the picture [s]; by default the end");
+  command->add_option("--begin", options->begin, "Begin of a strip or film [s]");
+  command->add_option("--end", options->end, "End of a strip or film [s]");
   command->add_option("--strip", options->strip, "This many moments side by side in one picture")
       ->check(CLI::Range(2, 50));
   command->add_option("--fps", options->fps, "Pictures per second of the film")

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "browser.h"
 #include "commands.h"
 #include "console.h"
 #include "exit_code.h"
@@ -29,11 +30,13 @@ constexpr const char* kFooter = R"(Examples:
   gotai run scene.toml -o run.h5
   gotai run scene.toml -o run.h5 --set impulse.method=penalty --set world.duration=2
   gotai run scene.toml --json --threads 1          only the figures, nothing is recorded
-  gotai run scene.toml --live                      watch it in the browser while it runs
+  gotai run scene.toml --live --open               watch it in the browser while it runs
   gotai run --resume run.h5                        go on with an interrupted run, bit for bit
   gotai run --resume run.h5 --set world.duration=9 the same, and longer
 Ctrl-C finishes the step and closes the recording; what was flushed survives even kill -9.
 Go on with `gotai view run.h5 --open`, `gotai info run.h5` or `gotai export run.h5 -o run.glb`.)";
+
+constexpr double kPatience = 15.0;  // for a browser to start [s]
 
 struct RunOptions {
   SceneOptions scene;
@@ -41,6 +44,7 @@ struct RunOptions {
   std::string resumed;  ///< recording to go on with; "" for a new run
   bool force = false;
   bool live = false;
+  bool open = false;
   int port = 0;
 };
 
@@ -91,12 +95,19 @@ OpenedScene reopen_scene(const RunOptions& options) {
 
 std::unique_ptr<view::LiveServer> start_live_view(const RunOptions& options,
                                                   const scene::SceneDescription& scene,
-                                                  const World& world) {
+                                                  const World& world, const InterruptGuard& guard) {
   if (!options.live) return nullptr;
   auto live = std::make_unique<view::LiveServer>(
       world, std::filesystem::path(scene.path).stem().string(), "gotai " GOTAI_VERSION,
       view::LiveServer::Options{.port = options.port, .fps = scene.record.fps});
   print_error(fmt::format("live at {} until the run ends", live->address()));
+  if (options.open) {
+    open_in_browser(live->address());
+    // Short runs would be over before the page is there.
+    if (!live->wait_for_viewer(kPatience, [&guard] { return guard.is_interrupted(); }) &&
+        !guard.is_interrupted())
+      print_error("no browser has asked for the page yet; the run goes on");
+  }
   return live;
 }
 
@@ -140,7 +151,8 @@ int run_scene(const RunOptions& options) {
 
   const InterruptGuard guard;
   std::optional<recording::Recorder> recorder = open_recorder(options, scene.description, world);
-  const std::unique_ptr<view::LiveServer> live = start_live_view(options, scene.description, world);
+  const std::unique_ptr<view::LiveServer> live =
+      start_live_view(options, scene.description, world, guard);
   const Stopwatch watch;
   RunMonitor monitor(world);
   try {
@@ -186,6 +198,10 @@ void add_run_command(CLI::App& app, Action& action) {
       ->needs(live)
       ->check(CLI::Range(0, 65535))
       ->type_name("PORT");
+  command
+      ->add_flag("--open", options->open,
+                 "Open the live view in the browser, and begin when the page is there")
+      ->needs(live);
   CLI::Option* scene = command->get_option("SCENE")->required(false);
   command
       ->add_option("--resume", options->resumed,

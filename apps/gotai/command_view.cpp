@@ -1,11 +1,10 @@
 #include <fmt/format.h>
-#include <spawn.h>
 
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 
+#include "browser.h"
 #include "commands.h"
 #include "console.h"
 #include "exit_code.h"
@@ -14,8 +13,6 @@
 #include "gotai/view/page.h"
 #include "gotai/view/recorded_run.h"
 #include "output_file.h"
-
-extern char** environ;
 
 namespace gotai::cli {
 namespace {
@@ -42,20 +39,6 @@ void write_text(const std::string& path, const std::string& text) {
     throw FileError(path, "cannot be written; is there such a folder, and space on the disk?");
 }
 
-/// Hands a file to the desktop's program for it; says where it is when there is none.
-void open_in_browser(const std::string& path) {
-#ifdef __APPLE__
-  std::string program = "open";
-#else
-  std::string program = "xdg-open";
-#endif
-  std::string target = std::filesystem::absolute(path).string();
-  std::array<char*, 3> argv{program.data(), target.data(), nullptr};
-  pid_t process = -1;
-  if (posix_spawnp(&process, program.c_str(), nullptr, nullptr, argv.data(), environ) != 0)
-    print_error(fmt::format("{} was not found; open {} in a browser", program, target));
-}
-
 int view_recording(ViewOptions options) {
   if (options.output.empty())
     options.output = std::filesystem::path(options.input).stem().string() + ".html";
@@ -75,7 +58,7 @@ int view_recording(ViewOptions options) {
   }
   write_text(options.output, page);
   print(fmt::format("wrote {} ({})\n", options.output, format_bytes(page.size())));
-  if (options.open) open_in_browser(options.output);
+  if (options.open) open_in_browser(std::filesystem::absolute(options.output).string());
   return kSuccess;
 }
 

@@ -85,6 +85,8 @@ TEST_F(Pictures, RenderExplainsMistakes) {
     return outcome.err;
   };
   EXPECT_THAT(error({"-o", at("run.gif")}), HasSubstr(".png, .mp4"));
+  EXPECT_THAT(error({"-o", at("a.png"), "--strip", "2", "--begin", "9"}),
+              HasSubstr("after the end"));
   EXPECT_THAT(error({"-o", at("a.png"), "--size", "64"}), HasSubstr("WIDTHxHEIGHT"));
   EXPECT_THAT(error({"-o", at("a.png"), "--size", "9x9"}), HasSubstr("16x16"));
   EXPECT_THAT(error({"-o", at("a.png"), "--samples", "99"}), HasSubstr("between 1 and 8"));

@@ -113,6 +113,52 @@ TEST_F(Live, SendsFramesAsTheyComeAndThenTheEnd) {
   EXPECT_THAT(received, testing::EndsWith("event: end\ndata: end\n\n"));
 }
 
+TEST_F(Live, GoesOnWhereAPageLostItsConnection) {
+  run(50);
+  std::string received;
+  std::thread viewer([&] {
+    client().Get("/events?from=20", [&](const char* data, std::size_t size) {
+      received.append(data, size);
+      return true;
+    });
+  });
+  server->wait_for_viewer(10.0, [] { return false; });
+  server->finish(10.0);
+  viewer.join();
+  EXPECT_THAT(received, testing::StartsWith("id: 20\nevent: frame\n"));
+}
+
+TEST_F(Live, WaitsForTheFirstPageAsLongAsItIsTold) {
+  EXPECT_FALSE(server->wait_for_viewer(0.05, [] { return false; }));
+  EXPECT_FALSE(server->wait_for_viewer(100.0, [] { return true; }));
+  std::thread viewer([&] { client().Get("/events"); });
+  EXPECT_TRUE(server->wait_for_viewer(100.0, [] { return false; }));
+  server->finish(10.0);
+  viewer.join();
+}
+
+TEST_F(Live, SmallStepsAreFewPointsOfTheCurves) {
+  model::StepReport report;
+  for (int i = 0; i < 1000; ++i) {
+    report.time = 1e-5 * (i + 1);
+    report.max_overlap = i == 500 ? 0.25 : 0.0;
+    server->on_step(*world, report);  // the world itself stands still: no frame is due
+  }
+  server->on_step(*world, world->step());
+  server->on_step(*world, world->step());  // the first frame
+  std::string received;
+  std::thread viewer([&] {
+    client().Get("/events", [&](const char* data, std::size_t size) {
+      received.append(data, size);
+      return true;
+    });
+  });
+  server->wait_for_viewer(10.0, [] { return false; });
+  server->finish(10.0);
+  viewer.join();
+  EXPECT_LT(received.size(), 20'000U);
+}
+
 TEST_F(Live, PausesStepsAndResumes) {
   auto http = client();
   ASSERT_EQ(http.Post("/pause")->status, 204);
@@ -144,6 +190,42 @@ TEST_F(Live, EndsAtOnceWhenAViewerStaysAway) {
 
 TEST_F(Live, APortThatIsTakenIsAnError) {
   EXPECT_THROW(LiveServer(*world, "cube", "test", {.port = server->port()}), Error);
+}
+
+TEST(LiveFramesQueue, ForgetsFramesThatTakeTooMuchMemory) {
+  LiveFrames frames;
+  for (int i = 0; i < 40; ++i) {
+    LiveFrame frame;
+    frame.frame.contacts.gap.resize(200'000);  // 88 bytes with what belongs to it
+    frames.push(std::move(frame));
+  }
+  bool closed = false;
+  const auto first = frames.next(0, std::chrono::milliseconds(0), closed);
+  ASSERT_TRUE(first);
+  EXPECT_GT(first->number, 20U);
+  EXPECT_LT(first->number, 30U);
+}
+
+TEST(CurvePoints, KeepThePeaksAndTheLastEnergies) {
+  std::vector<model::StepReport> steps(10);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    steps[i].time = static_cast<double>(i);
+    steps[i].max_overlap = i == 3 ? 7.0 : 1.0;
+    steps[i].energy.kinetic = static_cast<double>(i);
+  }
+  const auto points = curve_points(steps, 2);
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[0].time, 4.0);
+  EXPECT_EQ(points[1].time, 9.0);
+  for (std::size_t c = 0; c < curves().size(); ++c) {
+    if (curves()[c].name == "overlap_max") {
+      EXPECT_GT(points[0].values[c], points[1].values[c]);
+    }
+    if (curves()[c].name == "kinetic") {
+      EXPECT_EQ(points[1].values[c], 9.0);
+    }
+  }
+  EXPECT_TRUE(curve_points({}, 2).empty());
 }
 
 TEST(LiveFramesQueue, KeepsTheNewestAndTellsWhenItIsClosed) {

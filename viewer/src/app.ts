@@ -48,8 +48,6 @@ export class App {
     this.world = new World(run);
     this.stage.scene.add(this.world.object);
     this.stage.setExtent(this.world.extent);
-    this.stage.resize();
-    this.stage.frame(this.world.sphereOf(-1), false);
     this.stage.onMove(() => (this.dirty = true));
 
     const changed = () => this.apply();
@@ -74,6 +72,8 @@ export class App {
     this.bindKeys();
     window.addEventListener("resize", () => (this.dirty = true));
     this.apply();
+    this.stage.resize();
+    this.stage.frame(this.world.boxOf(-1), false);
     if (link) this.player.play();
     requestAnimationFrame((now) => this.tick(now));
   }
@@ -117,7 +117,21 @@ export class App {
     const hidden = this.charts.element.hidden;
     this.charts.element.hidden = !options.charts || this.charts.empty;
     if (themed || hidden !== this.charts.element.hidden) this.charts.build();
+    this.layOut();
     this.dirty = true;
+  }
+
+  /** Shares the page between the picture and the panels around it. */
+  private layOut(): void {
+    this.inspector.update(this.options.selected);
+    this.charts.fit();
+    const reach = (element: HTMLElement) => (element.hidden ? 0 : element.getBoundingClientRect().width + 14);
+    this.stage.setInsets({
+      left: reach(this.panel.element),
+      right: Math.max(reach(this.inspector.element), reach(this.charts.element)),
+      top: 66,
+      bottom: 78,
+    });
   }
 
   private tick(now: number): void {
@@ -127,6 +141,7 @@ export class App {
     this.player.advance(seconds);
     if (this.stage.resize()) {
       this.charts.build();
+      this.layOut();
       this.dirty = true;
     }
     this.stage.controls.update();
@@ -201,7 +216,7 @@ export class App {
   }
 
   private frameView(): void {
-    this.stage.frame(this.world.sphereOf(this.options.selected), true);
+    this.stage.frame(this.world.boxOf(this.options.selected), true);
     this.dirty = true;
   }
 

@@ -10,14 +10,14 @@ namespace gotai::render {
 
 /// A pixel whose light is kept apart: colour = plain + sun_part * sun + sky_part * sky.
 struct LitPixel {
-  Colour plain = Colour::Zero();  ///< background, already final
+  Colour plain = Colour::Zero();  ///< background and whatever else is final
   Colour sun = Colour::Zero();    ///< what the whole sun would add
   Colour sky = Colour::Zero();    ///< what the whole sky would add
   float sun_part = 0.0F;          ///< part of the sun that is seen from there, 0..1
   float sky_part = 0.0F;          ///< likewise for the sky
   Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< where the surface is [m]
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit
-  bool solid = false;                                ///< shows a surface
+  bool solid = false;                                ///< shows one surface
 };
 
 struct LitPicture {

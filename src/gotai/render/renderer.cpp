@@ -52,11 +52,9 @@ Vec3f around(const Vec3f& axis, float radius, float turn, float sine) {
 }
 
 /// Keeps colours up to 0.8 as they are and bends brighter ones below 1, losing saturation as the
-/// eye does [Khronos PBR Neutral].
+/// eye does [Khronos PBR Neutral, without what it takes off for reflections: there are none].
 Colour tone_map(Colour c) {
-  constexpr float kStart = 0.8F - 0.04F;
-  const float x = c.minCoeff();
-  c.array() -= x < 0.08F ? x - 6.25F * x * x : 0.04F;
+  constexpr float kStart = 0.8F;
   const float peak = c.maxCoeff();
   if (peak < kStart) return c;
   constexpr float d = 1.0F - kStart;
@@ -116,6 +114,7 @@ class Tracer {
     right_ = right.cast<float>();
     down_ = forward.cross(right).cast<float>();
     radius_ = 0.5F * static_cast<float>(extent.box.sizes().norm());
+    sun_ = sun_direction(-forward_);
   }
 
   LitPixel trace(int x, int y) const {
@@ -124,6 +123,8 @@ class Tracer {
     const int n = options_.samples;
     float sun_weight = 0.0F;
     float sky_weight = 0.0F;
+    Colour lit = Colour::Zero();  // sun and sky as these few samples see them
+    bool mixed = false;           // are there several surfaces in this pixel?
     for (int s = 0; s < n * n; ++s) {
       const float px = static_cast<float>(x) +
                        (static_cast<float>(s % n) + 0.5F) / static_cast<float>(n) -
@@ -140,19 +141,27 @@ class Tracer {
       if (sky_weight == 0.0F) {
         pixel.point = surface->point;
         pixel.normal = surface->normal;
+      } else if (!on_same_surface(pixel, *surface)) {
+        mixed = true;
       }
       const float clear = 1.0F - surface->haze;
-      const float facing = std::max(0.0F, surface->normal.dot(sun_direction()));
+      const float facing = std::max(0.0F, surface->normal.dot(sun_));
       const Colour sun = clear * facing * surface->albedo.cwiseProduct(sun_light());
       const Colour sky = clear * surface->albedo.cwiseProduct(sky_light(surface->normal));
       const Vec3f origin = surface->point + 2e-4F * radius_ * surface->normal;
       const auto [u, v] = spread.at(s);
       if (facing > 0.0F) {
-        const Vec3f to_sun = around(sun_direction(), std::sqrt(u), v, kSunHalfAngle);
-        pixel.sun_part += scene_.occluded(origin, to_sun, 20.0F * radius_) ? 0.0F : sun.sum();
+        const Vec3f to_sun = around(sun_, std::sqrt(u), v, kSunHalfAngle);
+        if (!scene_.occluded(origin, to_sun, 20.0F * radius_)) {
+          pixel.sun_part += sun.sum();
+          lit += sun;
+        }
       }
       const Vec3f to_sky = around(surface->normal, std::sqrt(v), u, 1.0F);
-      pixel.sky_part += scene_.occluded(origin, to_sky, 0.5F * radius_) ? 0.0F : sky.sum();
+      if (!scene_.occluded(origin, to_sky, 0.5F * radius_)) {
+        pixel.sky_part += sky.sum();
+        lit += sky;
+      }
       sun_weight += sun.sum();
       sky_weight += sky.sum();
       pixel.sun += sun;
@@ -161,8 +170,14 @@ class Tracer {
     }
     pixel.sun_part = sun_weight > 0.0F ? pixel.sun_part / sun_weight : 1.0F;
     pixel.sky_part = sky_weight > 0.0F ? pixel.sky_part / sky_weight : 1.0F;
-    pixel.solid = sky_weight > 0.0F;
+    pixel.solid = sky_weight > 0.0F && !mixed;
     const float part = 1.0F / static_cast<float>(n * n);
+    if (mixed) {
+      // What one surface sees of the sun says nothing about the other: no filter here.
+      pixel.plain += lit;
+      pixel.sun.setZero();
+      pixel.sky.setZero();
+    }
     pixel.sun *= part;
     pixel.sky *= part;
     pixel.plain *= part;
@@ -170,6 +185,11 @@ class Tracer {
   }
 
  private:
+  bool on_same_surface(const LitPixel& pixel, const Surface& surface) const {
+    return pixel.normal.dot(surface.normal) > 0.9F &&
+           std::abs(pixel.normal.dot(surface.point - pixel.point)) < 0.01F * radius_;
+  }
+
   std::optional<Surface> look(const Vec3f& direction) const {
     std::optional<Surface> surface = surroundings_.intersect(eye_, direction, pixel_);
     const std::optional<BodyHit> hit = scene_.intersect(eye_, direction);
@@ -184,6 +204,7 @@ class Tracer {
   const std::vector<Colour>& colours_;
   const RenderOptions& options_;
   Vec3f eye_, forward_, right_, down_;
+  Vec3f sun_;            // unit, to its middle
   float pixel_ = 0.0F;   // angle of a pixel in the middle [rad]
   float radius_ = 0.0F;  // of the world [m]
 };

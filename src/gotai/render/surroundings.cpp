@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 namespace gotai::render {
 namespace {
 
-const Colour kGround(0.84F, 0.86F, 0.89F);
-const Colour kLine(0.55F, 0.60F, 0.67F);
-const Colour kWall(0.66F, 0.71F, 0.78F);
+const Colour kGround(0.70F, 0.72F, 0.75F);
+const Colour kLine(0.42F, 0.46F, 0.52F);
+const Colour kWall(0.74F, 0.79F, 0.86F);
 const Colour kRim(0.26F, 0.31F, 0.40F);
 const Colour kHorizon(0.83F, 0.865F, 0.905F);
 const Colour kZenith(0.66F, 0.73F, 0.82F);
@@ -30,8 +31,13 @@ float line_cover(float x, float cell, float line, float width) {
 
 }  // namespace
 
-Vec3f sun_direction() { return Vec3f(0.45F, -0.55F, 1.0F).normalized(); }
-Colour sun_light() { return Colour(0.80F, 0.77F, 0.71F); }
+Vec3f sun_direction(const Vec3f& back) {
+  const Vec3f flat(back.x(), back.y(), 0.0F);
+  const Vec3f towards = flat.norm() > 1e-3F ? flat.normalized() : Vec3f(-Vec3f::UnitY());
+  const Vec3f left = towards.cross(Vec3f::UnitZ());
+  return (0.75F * left + 0.25F * towards + Vec3f::UnitZ()).normalized();
+}
+Colour sun_light() { return Colour(0.86F, 0.83F, 0.77F); }
 
 Colour sky_light(const Vec3f& normal) {
   const float up = 0.5F + 0.5F * normal.z();
@@ -58,16 +64,33 @@ Surroundings::Surroundings(const view::RunView& run, const view::FrameView& fram
       faces_.push_back({p, R.col(0), R.col(1), R.col(2), kInfinity, kInfinity, true});
       continue;
     }
-    const Vec3f h = body.half_extent.cast<float>();
-    const Vec3f middle = p + R.col(2) * (0.5F * h.z());
-    faces_.push_back({p, R.col(0), R.col(1), R.col(2), h.x(), h.y(), false});
-    for (const float side : {1.0F, -1.0F}) {
-      faces_.push_back({middle + side * h.x() * R.col(0), R.col(1), R.col(2), -side * R.col(0),
-                        h.y(), 0.5F * h.z(), false});
-      faces_.push_back({middle + side * h.y() * R.col(1), R.col(0), R.col(2), -side * R.col(1),
-                        h.x(), 0.5F * h.z(), false});
-    }
+    add_container(body, p, R);
   }
+  if (std::ranges::none_of(faces_, &Face::plane)) add_ground();
+}
+
+void Surroundings::add_container(const view::BodyView& body, const Vec3f& p,
+                                 const Eigen::Matrix3f& R) {
+  const Vec3f h = body.half_extent.cast<float>();
+  const Vec3f middle = p + R.col(2) * (0.5F * h.z());
+  faces_.push_back({p, R.col(0), R.col(1), R.col(2), h.x(), h.y(), false});
+  for (const float side : {1.0F, -1.0F}) {
+    faces_.push_back({middle + side * h.x() * R.col(0), R.col(1), R.col(2), -side * R.col(0), h.y(),
+                      0.5F * h.z(), false});
+    faces_.push_back({middle + side * h.y() * R.col(1), R.col(0), R.col(2), -side * R.col(1), h.x(),
+                      0.5F * h.z(), false});
+  }
+}
+
+void Surroundings::add_ground() {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const auto is_floor = [](const Face& face) { return face.normal.z() > 0.999F; };
+  const auto lower = [](const Face& a, const Face& b) { return a.center.z() < b.center.z(); };
+  auto floors = faces_ | std::views::filter(is_floor);
+  const auto lowest = std::ranges::min_element(floors, lower);
+  if (lowest == floors.end()) return;
+  faces_.push_back({(*lowest).center, Vec3f::UnitX(), Vec3f::UnitY(), Vec3f::UnitZ(), kInfinity,
+                    kInfinity, true});
 }
 
 std::optional<Surface> Surroundings::intersect(const Vec3f& origin, const Vec3f& direction,

@@ -20,8 +20,11 @@ struct Surface {
   float haze = 0.0F;               ///< 0: seen clearly, 1: lost in the background
 };
 
-/// Direction of the sun's middle and half of its angle [rad].
-Vec3f sun_direction();
+/// Direction of the sun's middle: high, and to the left of the camera, so that shadows fall where
+/// they are seen.
+/// @param back  from what is looked at to the camera, unit
+Vec3f sun_direction(const Vec3f& back);
+/// Half of the sun's angle [rad].
 inline constexpr float kSunHalfAngle = 0.045F;
 
 /// Irradiance over pi of the sun at perpendicular incidence.
@@ -31,7 +34,8 @@ Colour sky_light(const Vec3f& normal);
 /// What is seen where nothing is.
 Colour background(const Vec3f& direction);
 
-/// Planes and containers at a moment.
+/// Planes and containers at a moment. Where there is no plane, a ground is drawn below the
+/// containers.
 class Surroundings {
  public:
   Surroundings(const view::RunView& run, const view::FrameView& frame, const Extent& extent);
@@ -48,6 +52,8 @@ class Surroundings {
     bool plane = false;
   };
 
+  void add_container(const view::BodyView& body, const Vec3f& p, const Eigen::Matrix3f& R);
+  void add_ground();
   Colour ground_colour(const Face& face, const Vec3f& point, float width) const;
 
   std::vector<Face> faces_;

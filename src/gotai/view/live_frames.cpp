@@ -12,6 +12,7 @@ namespace {
 
 // Half a minute of frames: who opens the page late still sees how it began.
 constexpr std::size_t kKeptFrames = 1800;
+constexpr std::size_t kKeptBytes = std::size_t{256} << 20U;
 // More arrows than anybody can tell apart.
 constexpr std::size_t kMostContacts = 3000;
 
@@ -41,6 +42,15 @@ void add_contacts(const ContactsView& contacts, const std::string& name,
   container.add(name + ".gap", gap);
 }
 
+/// Memory of a frame, nearly.
+std::size_t bytes_of(const LiveFrame& live) {
+  const FrameView& frame = live.frame;
+  const std::size_t per_body = 3 * sizeof(Vec3) + sizeof(Quat);
+  const std::size_t per_contact = 3 * sizeof(Vec3) + sizeof(double) + 2 * sizeof(std::uint32_t);
+  return frame.x_W.size() * per_body + frame.contacts.gap.size() * per_contact +
+         live.steps.size() * (sizeof(CurvePoint) + curves().size() * sizeof(double));
+}
+
 }  // namespace
 
 std::string encode(const LiveFrame& live) {
@@ -64,9 +74,9 @@ std::string encode(const LiveFrame& live) {
   add_contacts(frame.contacts, "contacts", container);
   add_contacts(apparent_contacts(frame.contacts), "apparent", container);
   nlohmann::json steps = nlohmann::json::array();
-  for (const model::StepReport& report : live.steps) {
-    nlohmann::json step{{"time", report.time}};
-    for (const Curve& curve : curves()) step[curve.name] = curve.value(report);
+  for (const CurvePoint& point : live.steps) {
+    nlohmann::json step{{"time", point.time}};
+    for (std::size_t c = 0; c < point.values.size(); ++c) step[curves()[c].name] = point.values[c];
     steps.push_back(std::move(step));
   }
   return to_base64(container.finish(
@@ -77,8 +87,10 @@ void LiveFrames::push(LiveFrame frame) {
   auto shared = std::make_shared<const LiveFrame>(std::move(frame));
   {
     const std::scoped_lock lock(mutex_);
+    bytes_ += bytes_of(*shared);
     frames_.push_back(std::move(shared));
-    if (frames_.size() > kKeptFrames) {
+    while (frames_.size() > kKeptFrames || (bytes_ > kKeptBytes && frames_.size() > 1)) {
+      bytes_ -= bytes_of(*frames_.front());
       frames_.pop_front();
       ++first_;
     }

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "gotai/model/step.h"
+#include "gotai/view/curve_points.h"
 #include "gotai/view/run_view.h"
 
 namespace gotai::view {
@@ -21,13 +21,14 @@ namespace gotai::view {
 /// A frame and the measurements of the steps since the one before.
 struct LiveFrame {
   FrameView frame;
-  std::vector<model::StepReport> steps;
+  std::vector<CurvePoint> steps;
 };
 
 /// The text of a frame as viewer/src/data/live.ts reads it: a container in base64.
 std::string encode(const LiveFrame& frame);
 
-/// Keeps the last frames, each with a number. Every viewer reads at its own pace.
+/// Keeps the last frames, each with a number, as far as memory is worth it. Every viewer reads at
+/// its own pace.
 class LiveFrames {
  public:
   void push(LiveFrame frame);
@@ -47,6 +48,7 @@ class LiveFrames {
   std::condition_variable arrived_;
   std::deque<std::shared_ptr<const LiveFrame>> frames_;
   std::uint64_t first_ = 0;  // number of frames_[0]
+  std::size_t bytes_ = 0;    // of frames_
   bool closed_ = false;
 };
 

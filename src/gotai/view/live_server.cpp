@@ -4,6 +4,7 @@
 #include <httplib.h>
 
 #include <atomic>
+#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -18,6 +19,9 @@ namespace gotai::view {
 namespace {
 
 using std::chrono::milliseconds;
+
+// A chart has no room for more points; runs may take thousands of steps for a frame.
+constexpr std::size_t kCurvePointsPerFrame = 4;
 
 /// May the simulation go on?
 class Gate {
@@ -81,6 +85,7 @@ struct LiveServer::State {
   LiveFrames frames;
   Gate gate;
   std::atomic<int> viewers{0};
+  std::atomic<bool> has_been_seen{false};
   std::atomic<bool> stopping{false};
 
   double frame_time = 0.0;  // simulated time between frames [s]
@@ -89,7 +94,7 @@ struct LiveServer::State {
 
   bool is_own(const httplib::Request& request) const;
   void route();
-  void send_events(httplib::Response& response);
+  void send_events(std::uint64_t first, httplib::Response& response);
 };
 
 /// Refuses what another site's page asks for, also when its name has been made to lead here.
@@ -122,8 +127,12 @@ void LiveServer::State::route() {
     out.set_content(reinterpret_cast<const char*>(scene.data()), scene.size(),
                     "application/octet-stream");
   });
-  server.Get("/events",
-             [this](const httplib::Request&, httplib::Response& out) { send_events(out); });
+  server.Get("/events", [this](const httplib::Request& request, httplib::Response& out) {
+    std::uint64_t first = 0;
+    const std::string from = request.get_param_value("from");
+    std::from_chars(from.data(), from.data() + from.size(), first);
+    send_events(first, out);
+  });
   const auto command = [this](const char* path, void (Gate::*action)()) {
     server.Post(path, [this, action](const httplib::Request&, httplib::Response& out) {
       (gate.*action)();
@@ -135,19 +144,22 @@ void LiveServer::State::route() {
   command("/step", &Gate::step);
 }
 
-/// Server-sent events: one "frame" each, and "end".
-void LiveServer::State::send_events(httplib::Response& response) {
+/// Server-sent events: one "frame" each, and "end". `first` is the number of the first frame: a
+/// page that has lost its connection goes on where it was.
+void LiveServer::State::send_events(std::uint64_t first, httplib::Response& response) {
   ++viewers;
+  has_been_seen = true;
   response.set_chunked_content_provider(
       "text/event-stream",
-      [this, number = std::uint64_t{0}](std::size_t, httplib::DataSink& sink) mutable {
+      [this, number = first](std::size_t, httplib::DataSink& sink) mutable {
         if (stopping) return false;
         bool closed = false;
         const auto next = frames.next(number, milliseconds(500), closed);
         std::string text;
         if (next) {
           number = next->number + 1;
-          text = "event: frame\ndata: " + encode(*next->frame) + "\n\n";
+          text =
+              fmt::format("id: {}\nevent: frame\ndata: {}\n\n", next->number, encode(*next->frame));
         } else {
           // A comment shows whether the viewer is still there.
           text = closed ? "event: end\ndata: end\n\n" : ": waiting\n\n";
@@ -171,6 +183,8 @@ LiveServer::LiveServer(const World& world, const std::string& title, const std::
   state.route();
   // Whole frames at once: waiting for more to send would only delay them.
   state.server.set_tcp_nodelay(true);
+  // Pages that draw slowly fall behind; their frames are kept.
+  state.server.set_write_timeout(60);
   // By default the library shares a port with other programs.
   state.server.set_socket_options([](socket_t socket) {
     const int yes = 1;
@@ -202,7 +216,15 @@ void LiveServer::on_step(const World& world, const model::StepReport& report) {
   if (world.time() >= state.next_frame - 1e-9) state.next_frame += state.frame_time;
   // Steps longer than a frame's time: the next frame is the next step.
   state.next_frame = std::max(state.next_frame, world.time());
-  state.frames.push({capture(world), std::exchange(state.steps, {})});
+  state.frames.push({capture(world), curve_points(state.steps, kCurvePointsPerFrame)});
+  state.steps.clear();
+}
+
+bool LiveServer::wait_for_viewer(double seconds, const std::function<bool()>& stop) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (!state_->has_been_seen && !stop() && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(milliseconds(20));
+  return state_->has_been_seen;
 }
 
 void LiveServer::wait_while_paused(const std::function<bool()>& stop) { state_->gate.wait(stop); }

@@ -37,6 +37,9 @@ class LiveServer {
   /// "http://127.0.0.1:PORT/"
   std::string address() const;
 
+  /// Waits (at most so many seconds, or until `stop` says so) for the first page to be there.
+  /// @returns whether one is
+  bool wait_for_viewer(double seconds, const std::function<bool()>& stop);
   /// Call after every step.
   void on_step(const World& world, const model::StepReport& report);
   /// Returns at once while the simulation may go on; while a viewer has paused it, returns when it

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "gotai/view/curve_points.h"
 #include "gotai/view/pack.h"
 #include "gotai/view/pack_contacts.h"
 #include "gotai/view/run_header.h"
@@ -144,29 +145,22 @@ Ranges measure(const RunView& run, const FrameSource& frames, const std::vector<
   return ranges;
 }
 
-/// Curves, at most so many points each: a bucket of steps gives its last or its largest value.
+/// Curves, at most so many points each.
 void add_curves(std::span<const model::StepReport> steps, std::size_t most,
                 ContainerWriter& container, std::vector<std::string>& notes) {
-  const std::size_t bucket = std::max<std::size_t>(1, (steps.size() + most - 1) / most);
-  if (bucket > 1)
+  const std::vector<CurvePoint> points = curve_points(steps, most);
+  if (points.size() < steps.size())
     notes.push_back(
         fmt::format("Charts show one point for every {} steps: the largest contacts, "
                     "overlap, residual and times, the last energies.",
-                    bucket));
+                    (steps.size() + most - 1) / most));
   std::vector<double> times;
-  for (std::size_t i = 0; i < steps.size(); i += bucket)
-    times.push_back(steps[std::min(i + bucket, steps.size()) - 1].time);
+  for (const CurvePoint& point : points) times.push_back(point.time);
   container.add("steps.time", times);
-  for (const Curve& curve : curves()) {
+  for (std::size_t c = 0; c < curves().size(); ++c) {
     std::vector<float> values;
-    for (std::size_t i = 0; i < steps.size(); i += bucket) {
-      const std::size_t end = std::min(i + bucket, steps.size());
-      double value = curve.value(steps[end - 1]);
-      if (curve.peak)
-        for (std::size_t j = i; j < end; ++j) value = std::max(value, curve.value(steps[j]));
-      values.push_back(static_cast<float>(value));
-    }
-    container.add("steps." + curve.name, values);
+    for (const CurvePoint& point : points) values.push_back(static_cast<float>(point.values[c]));
+    container.add("steps." + curves()[c].name, values);
   }
 }
 

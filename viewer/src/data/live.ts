@@ -17,6 +17,7 @@ interface LiveFrame {
   apparent: Contacts;
 }
 
+const kMostFailures = 3; // connections lost in a row
 const kKeptFrames = 3600; // a minute at 60 per second
 
 function readContacts(file: Container<LiveHeader>, name: string): Contacts {
@@ -95,23 +96,41 @@ export async function connect(onFrame: () => void, onEnd: () => void): Promise<L
   if (!answer.ok) throw new Error(`the simulation answered ${answer.status}`);
   const frames = new LiveFrames();
   const run = readRun(new Uint8Array(await answer.arrayBuffer()), frames);
+  // One after the other: a step that overtakes "resume" would pause again.
+  let commands = Promise.resolve();
   const command = (name: string) => {
-    void fetch(name, { method: "POST" }).catch(onEnd);
+    const send = async () => void (await fetch(name, { method: "POST" }));
+    commands = commands.then(send).catch(() => undefined); // the events tell when the run has ended
   };
+  let next = 0; // number of the frame that comes next
+  let failures = 0;
   await new Promise<void>((resolve) => {
-    const events = new EventSource("events");
     const finish = () => {
-      events.close();
       onEnd();
       resolve();
     };
-    events.addEventListener("frame", (event) => {
-      takeMessage((event as MessageEvent<string>).data, frames, run.series);
-      onFrame();
-      resolve();
-    });
-    events.addEventListener("end", finish);
-    events.onerror = finish;
+    const listen = () => {
+      const events = new EventSource(`events?from=${next}`);
+      events.addEventListener("frame", (event) => {
+        const message = event as MessageEvent<string>;
+        failures = 0;
+        next = Number(message.lastEventId) + 1;
+        takeMessage(message.data, frames, run.series);
+        onFrame();
+        resolve();
+      });
+      events.addEventListener("end", () => {
+        events.close();
+        finish();
+      });
+      // A lost connection is taken up again; nobody answers any more when the run was killed.
+      events.onerror = () => {
+        events.close();
+        if (++failures < kMostFailures) setTimeout(listen, 300);
+        else finish();
+      };
+    };
+    listen();
   });
   return {
     run,

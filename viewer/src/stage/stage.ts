@@ -6,7 +6,25 @@ import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment
 import { Theme } from "./colours";
 
 const kViewDirection = new THREE.Vector3(0.62, -1, 0.5).normalize();
-const kSunDirection = new THREE.Vector3(0.45, -0.55, 1).normalize();
+const kSunDirection = new THREE.Vector3(-0.55, -0.6, 1).normalize(); // from the left of the first view
+
+/** Pixels along the edges of the page that panels cover. */
+export interface Insets {
+  left: number;
+  right: number;
+  top: number;
+  bottom: number;
+}
+
+/** Is there no graphics card, so that every pixel costs time of the processor? */
+function drawsInSoftware(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) throw new Error("This browser has no WebGL 2, which the picture needs.");
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
 
 export class Stage {
   readonly scene = new THREE.Scene();
@@ -14,11 +32,16 @@ export class Stage {
   readonly renderer: THREE.WebGLRenderer;
   readonly controls: OrbitControls;
   private readonly sun = new THREE.DirectionalLight(0xfff6ea, 2);
+  /** Stands for the light from around where reflections would take too long. */
+  private readonly sky = new THREE.HemisphereLight(0xffffff, 0xb9b4ae, 1);
   private readonly moved = new Set<() => void>();
+  private insets: Insets = { left: 0, right: 0, top: 0, bottom: 0 };
 
   constructor(private readonly parent: HTMLElement) {
-    this.renderer = new THREE.WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    const simple = drawsInSoftware();
+    document.documentElement.classList.toggle("simple", simple);
+    this.renderer = new THREE.WebGLRenderer({ antialias: !simple, powerPreference: "high-performance" });
+    this.renderer.setPixelRatio(simple ? 1 : Math.min(2, window.devicePixelRatio));
     this.renderer.toneMapping = THREE.NeutralToneMapping;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
@@ -31,13 +54,18 @@ export class Stage {
     this.controls.zoomToCursor = true;
     this.controls.addEventListener("change", () => this.moved.forEach((call) => call()));
 
-    const maker = new THREE.PMREMGenerator(this.renderer);
-    this.scene.environment = maker.fromScene(new RoomEnvironment(), 0.04).texture;
-    this.scene.environmentRotation.set(Math.PI / 2, 0, 0); // its up is y
-    maker.dispose();
+    if (simple) {
+      this.sky.position.set(0, 0, 1);
+      this.scene.add(this.sky);
+    } else {
+      const maker = new THREE.PMREMGenerator(this.renderer);
+      this.scene.environment = maker.fromScene(new RoomEnvironment(), 0.04).texture;
+      this.scene.environmentRotation.set(Math.PI / 2, 0, 0); // its up is y
+      maker.dispose();
+    }
     this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(2048, 2048);
-    this.sun.shadow.radius = 3;
+    this.sun.shadow.mapSize.setScalar(simple ? 1024 : 2048);
+    this.sun.shadow.radius = simple ? 1 : 3;
     this.scene.add(this.sun, this.sun.target);
   }
 
@@ -48,6 +76,7 @@ export class Stage {
   setTheme(theme: Theme): void {
     this.scene.background = new THREE.Color(theme.background);
     this.scene.environmentIntensity = theme.environment;
+    this.sky.intensity = 3.6 * theme.environment;
     this.sun.intensity = theme.sun;
   }
 
@@ -68,17 +97,47 @@ export class Stage {
     this.camera.updateProjectionMatrix();
   }
 
-  /** Moves the camera so that the sphere fills the picture; keeps the direction when asked to. */
-  frame(target: THREE.Sphere, keepDirection: boolean): void {
-    const direction = keepDirection
-      ? this.camera.position.clone().sub(this.controls.target).normalize()
+  /** Moves the camera so that the box fills what the panels leave free; keeps the direction when asked to. */
+  frame(box: THREE.Box3, keepDirection: boolean): void {
+    const { camera } = this;
+    const target = box.getCenter(new THREE.Vector3());
+    const back = keepDirection
+      ? camera.position.clone().sub(this.controls.target).normalize()
       : kViewDirection.clone();
-    const half = THREE.MathUtils.degToRad(this.camera.fov / 2);
-    const narrow = Math.atan(Math.tan(half) * Math.min(1, this.camera.aspect));
-    const distance = (target.radius * 0.95) / Math.sin(narrow);
-    this.controls.target.copy(target.center);
-    this.camera.position.copy(target.center).addScaledVector(direction, distance);
+    const right = new THREE.Vector3(0, 0, 1).cross(back).normalize();
+    const up = back.clone().cross(right);
+    const { width, height } = this.free();
+    const tangent = Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) / this.parent.clientHeight;
+    let distance = 0;
+    const corner = new THREE.Vector3();
+    for (let i = 0; i < 8; ++i) {
+      corner.set((i & 1 ? box.max : box.min).x, (i & 2 ? box.max : box.min).y, (i & 4 ? box.max : box.min).z).sub(target);
+      const wide = Math.abs(corner.dot(right)) / (tangent * width);
+      const high = Math.abs(corner.dot(up)) / (tangent * height);
+      distance = Math.max(distance, 1.04 * Math.max(wide, high) + corner.dot(back));
+    }
+    this.controls.target.copy(target);
+    camera.position.copy(target).addScaledVector(back, distance);
     this.controls.update();
+  }
+
+  /** Moves the middle of the picture to the middle of what the panels leave free. */
+  setInsets(insets: Insets): void {
+    this.insets = insets;
+    const { clientWidth: width, clientHeight: height } = this.parent;
+    const free = this.free();
+    // On small screens panels may cover nearly everything: then they lie over the picture.
+    const roomy = free.width > 200 && free.height > 200;
+    const x = roomy ? (insets.left - insets.right) / 2 : 0;
+    const y = roomy ? (insets.top - insets.bottom) / 2 : 0;
+    this.camera.setViewOffset(width, height, -x, -y, width, height);
+  }
+
+  private free(): { width: number; height: number } {
+    const { clientWidth: width, clientHeight: height } = this.parent;
+    const { left, right, top, bottom } = this.insets;
+    const free = { width: width - left - right, height: height - top - bottom };
+    return free.width > 200 && free.height > 200 ? free : { width, height };
   }
 
   resize(): boolean {
@@ -87,7 +146,7 @@ export class Stage {
     if (!width || !height || (size.x === width && size.y === height)) return false;
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    this.setInsets(this.insets);
     return true;
   }
 

@@ -39,17 +39,27 @@ export function roundLength(length: number): number {
   return power * (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10);
 }
 
+function frameOf(poses: Float32Array, body: number): { at: THREE.Vector3; up: THREE.Vector3 } {
+  const i = kPose * body;
+  const turn = new THREE.Quaternion(poses[i + 4], poses[i + 5], poses[i + 6], poses[i + 3]);
+  return { at: new THREE.Vector3().fromArray(poses, i), up: new THREE.Vector3(0, 0, 1).applyQuaternion(turn) };
+}
+
+/** Do two planes through these frames lie in each other? */
+function coincide(a: ReturnType<typeof frameOf>, b: ReturnType<typeof frameOf>, tolerance: number): boolean {
+  return a.up.dot(b.up) > 0.9999 && Math.abs(b.at.clone().sub(a.at).dot(a.up)) < tolerance;
+}
+
 export class Walls {
   readonly object = new THREE.Group();
   private readonly grid: THREE.ShaderMaterial;
   private readonly shadow = new THREE.ShadowMaterial({ depthWrite: false });
-  private readonly wall = new THREE.MeshStandardMaterial({
-    transparent: true, opacity: 0.16, roughness: 0.9, depthWrite: false,
-  });
+  private readonly wall = new THREE.MeshLambertMaterial({ transparent: true, opacity: 0.16, depthWrite: false });
   private readonly edge = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.75 });
   private readonly moving: { object: THREE.Object3D; body: number }[] = [];
 
-  constructor(run: Run, world: THREE.Sphere) {
+  /** @param poses of all bodies at the beginning */
+  constructor(run: Run, world: THREE.Sphere, poses: Float32Array) {
     this.grid = new THREE.ShaderMaterial({
       ...kGridShader,
       uniforms: {
@@ -61,9 +71,20 @@ export class Walls {
       transparent: true,
       depthWrite: false,
     });
-    run.header.bodies.forEach((body, index) => {
+    const { bodies } = run.header;
+    const planes = bodies.flatMap((body, i) => (body.geometry === "plane" ? [frameOf(poses, i)] : []));
+    bodies.forEach((body, index) => {
       if (body.geometry === "shape") return;
-      const object = body.geometry === "plane" ? this.plane(world) : this.container(body);
+      const object = new THREE.Group();
+      if (body.geometry === "plane") {
+        object.add(this.plane(world));
+      } else {
+        // A floor that lies on a plane would be shaded twice.
+        const own = frameOf(poses, index);
+        const onPlane = planes.some((plane) => coincide(plane, own, 1e-3 * world.radius));
+        object.add(this.container(body, !onPlane));
+        if (!planes.length) object.add(this.plane(world, 0.002 * world.radius)); // for the eye only
+      }
       this.moving.push({ object, body: index });
       this.object.add(object);
     });
@@ -85,7 +106,7 @@ export class Walls {
     }
   }
 
-  private plane(world: THREE.Sphere): THREE.Object3D {
+  private plane(world: THREE.Sphere, below = 0): THREE.Object3D {
     const disc = new THREE.CircleGeometry(9 * world.radius, 96);
     const ground = new THREE.Mesh(disc, this.grid);
     ground.renderOrder = -2;
@@ -93,17 +114,19 @@ export class Walls {
     shadow.receiveShadow = true;
     shadow.renderOrder = -1;
     const group = new THREE.Group();
-    group.add(ground, shadow);
+    group.add(ground);
+    if (!below) group.add(shadow);
+    group.position.z = -below;
     return group;
   }
 
   /** Floor and four walls, seen from inside only, so that near walls hide nothing. */
-  private container(body: BodyHeader): THREE.Object3D {
+  private container(body: BodyHeader, shadedFloor: boolean): THREE.Object3D {
     const [x, y, height] = body.extent ?? [1, 1, 1];
     const group = new THREE.Group();
-    const face = (w: number, h: number, place: (m: THREE.Mesh) => void) => {
+    const face = (w: number, h: number, place: (m: THREE.Mesh) => void, shaded = true) => {
       const geometry = new THREE.PlaneGeometry(w, h);
-      for (const material of [this.wall, this.shadow]) {
+      for (const material of shaded ? [this.wall, this.shadow] : [this.wall]) {
         const mesh = new THREE.Mesh(geometry, material);
         place(mesh);
         mesh.receiveShadow = true;
@@ -111,7 +134,7 @@ export class Walls {
         group.add(mesh);
       }
     };
-    face(2 * x, 2 * y, () => {});
+    face(2 * x, 2 * y, () => {}, shadedFloor);
     face(2 * x, height, (m) => m.position.set(0, y, height / 2) && m.rotation.set(Math.PI / 2, 0, 0));
     face(2 * x, height, (m) => m.position.set(0, -y, height / 2) && m.rotation.set(-Math.PI / 2, 0, 0));
     face(height, 2 * y, (m) => m.position.set(x, 0, height / 2) && m.rotation.set(0, -Math.PI / 2, 0));

@@ -26,7 +26,8 @@ export class World {
   readonly object = new THREE.Group();
   readonly moving: number[];
   readonly scales: ColourScales;
-  readonly extent: THREE.Sphere;
+  readonly box: THREE.Box3; // of the whole run
+  readonly extent: THREE.Sphere; // around it
   /** State of the shown moment. */
   readonly poses: Float32Array;
   readonly velocities: Float32Array;
@@ -55,12 +56,13 @@ export class World {
     this.loads = new Float32Array(bodies.length);
     this.present = new Uint8Array(bodies.length).fill(1);
     this.colours = new Float32Array(3 * bodies.length);
-    this.extent = this.measureExtent();
+    this.box = this.measureBox();
+    this.extent = this.box.getBoundingSphere(new THREE.Sphere());
     this.bodyRadius = percentile(this.moving.map((b) => bodies[b].radius), 0.5) || this.extent.radius / 10;
     this.scales = this.measureScales();
 
     this.bodies = new Bodies(run);
-    this.walls = new Walls(run, this.extent);
+    this.walls = new Walls(run, this.extent, this.firstPoses());
     this.spheres = new VoxelSpheres(run);
     this.contactMarkers = new ContactMarkers(0xff3d3d, 0xffb000, 0.9 * this.bodyRadius, this.scales, false);
     this.apparentMarkers = new ContactMarkers(0x00c2d8, 0x0a7fe0, 0.9 * this.bodyRadius, this.scales, true);
@@ -123,11 +125,12 @@ export class World {
     return this.bodies.pick(ray);
   }
 
-  /** Sphere around a body at the shown moment, or around all that moves and the containers. */
-  sphereOf(body: number): THREE.Sphere {
-    if (body < 0) return this.extent;
+  /** Box around a body at the shown moment, or around all that moves and the containers. */
+  boxOf(body: number): THREE.Box3 {
+    if (body < 0) return this.box;
     const center = new THREE.Vector3().fromArray(this.poses, kPose * body);
-    return new THREE.Sphere(center, 2.2 * this.run.header.bodies[body].radius);
+    const size = new THREE.Vector3().setScalar(3 * this.run.header.bodies[body].radius);
+    return new THREE.Box3().setFromCenterAndSize(center, size);
   }
 
   private paint(mode: ColourMode): void {
@@ -148,6 +151,12 @@ export class World {
     return Math.hypot(this.velocities[i], this.velocities[i + 1], this.velocities[i + 2]);
   }
 
+  private firstPoses(): Float32Array {
+    const poses = new Float32Array(this.poses.length);
+    if (this.run.frames.count) this.run.frames.poses(0, poses);
+    return poses;
+  }
+
   private sampledFrames(): number[] {
     const count = this.run.frames.count;
     const samples = Math.min(24, count);
@@ -155,7 +164,7 @@ export class World {
   }
 
   /** Around where bodies spend the run; the few that fly off do not count. */
-  private measureExtent(): THREE.Sphere {
+  private measureBox(): THREE.Box3 {
     const axes: number[][] = [[], [], []];
     const poses = new Float32Array(this.poses.length);
     const bodies = this.run.header.bodies;
@@ -173,25 +182,23 @@ export class World {
       box.min.fromArray(axes.map((axis) => percentile(axis, 0.01)));
       box.max.fromArray(axes.map((axis) => percentile(axis, 0.99)));
     }
+    const first = this.firstPoses();
+    const moves = new Set(this.moving);
     bodies.forEach((body, i) => {
-      if (body.geometry === "plane" || this.moving.includes(i)) return;
-      this.run.frames.count && this.run.frames.poses(0, poses);
-      const at = new THREE.Vector3().fromArray(poses, kPose * i);
+      if (body.geometry === "plane" || moves.has(i)) return;
+      const at = new THREE.Vector3().fromArray(first, kPose * i);
       const [x, y, z] = body.extent ?? [body.radius, body.radius, body.radius];
       box.expandByPoint(at.clone().add(new THREE.Vector3(x, y, z)));
       box.expandByPoint(at.clone().sub(new THREE.Vector3(x, y, body.extent ? 0 : z)));
     });
     if (this.run.header.live) this.addGround(box);
-    const sphere = new THREE.Sphere(new THREE.Vector3(), 1);
-    if (!box.isEmpty()) box.getBoundingSphere(sphere);
-    return sphere;
+    return box.isEmpty() ? new THREE.Box3().setFromCenterAndSize(new THREE.Vector3(), new THREE.Vector3(1, 1, 1)) : box;
   }
 
   /** Nobody knows yet where a running simulation goes; most fall onto their planes. */
   private addGround(box: THREE.Box3): void {
     if (box.isEmpty()) return;
-    const poses = new Float32Array(this.poses.length);
-    this.run.frames.poses(0, poses);
+    const poses = this.firstPoses();
     const center = box.getCenter(new THREE.Vector3());
     this.run.header.bodies.forEach((body, i) => {
       if (body.geometry !== "plane") return;

@@ -7,12 +7,26 @@ import type { Run, SeriesHeader } from "../data/run";
 import { format, formatTick, h } from "./dom";
 
 const kColours = ["#3f7fe8", "#f0a030", "#38a87a", "#dd5a8a", "#8d6be0"];
-const kHeight = 92;
+const kHeight = 92; // pixels, before the charts are fitted to the page
+const kLeastHeight = 54;
+const kMostHeight = 120;
 
 interface Chart {
   plot: uPlot;
+  place: HTMLElement;
   marker: HTMLElement;
   values: { header: SeriesHeader; text: HTMLElement }[];
+}
+
+/** Few powers of ten, whatever the span. */
+function decades(_: uPlot, ticks: number[]): (number | null)[] {
+  const exponents = ticks.filter((t) => t > 0).map((t) => Math.log10(t));
+  const span = exponents.length ? Math.max(...exponents) - Math.min(...exponents) : 0;
+  const stride = Math.max(1, Math.ceil(span / 3));
+  return ticks.map((t) => {
+    const exponent = Math.round(Math.log10(t));
+    return t > 0 && Math.abs(Math.log10(t) - exponent) < 1e-6 && exponent % stride === 0 ? t : null;
+  });
 }
 
 /** Positive values a logarithmic axis can show; others leave a gap. */
@@ -22,6 +36,7 @@ export class Charts {
   readonly element = h("div", { class: "card charts" });
   private charts: Chart[] = [];
   private drawnPoints = -1;
+  private height = kHeight;
 
   constructor(private readonly run: Run, private readonly seek: (time: number) => void) {
     this.build();
@@ -40,6 +55,24 @@ export class Charts {
       groups.set(series.chart, [...(groups.get(series.chart) ?? []), series]);
     this.charts = [...groups].map(([title, series]) => this.chart(title, series));
     this.drawnPoints = this.run.series.time.length;
+    this.fit();
+  }
+
+  /** Gives the charts the height that the page has for them, so that all can be seen at once. */
+  fit(): void {
+    const column = this.element.parentElement;
+    if (!column || !this.element.clientHeight || this.empty) return;
+    const taken = [...column.children]
+      .filter((child) => child !== this.element && (child as HTMLElement).offsetHeight)
+      .reduce((sum, child) => sum + (child as HTMLElement).offsetHeight + 10, 0);
+    const spare = column.clientHeight - taken - (this.element.scrollHeight + 2);
+    const height = Math.floor(Math.min(kMostHeight, Math.max(kLeastHeight, this.height + spare / this.charts.length)));
+    if (height === this.height) return;
+    this.height = height;
+    for (const { plot, place } of this.charts) {
+      place.style.height = `${height}px`; // at once; the plot follows later
+      plot.setSize({ width: plot.width, height });
+    }
   }
 
   update(time: number): void {
@@ -83,19 +116,21 @@ export class Charts {
       return { header: entry, text };
     });
     const place = h("div", { class: "plot" });
+    place.style.height = `${this.height}px`;
     this.element.append(h("section", { "data-chart": title }, head, place));
     const log = title === "Residual";
     const plot = new uPlot(
       {
         width: this.element.clientWidth ? place.clientWidth : 316,
-        height: kHeight,
+        height: this.height,
         legend: { show: false },
         cursor: { drag: { x: false, y: false }, points: { show: false }, y: false },
         padding: [6, 8, 0, 0],
         scales: { x: { time: false }, y: log ? { distr: 3 } : {} },
         axes: [
           { ...axis, size: 18, gap: 2, space: 50 },
-          { ...axis, size: 44, gap: 3, space: 24, values: (_, ticks) => ticks.map((t) => (t == null ? "" : formatTick(t))) },
+          { ...axis, ...(log ? { filter: decades, grid: { ...grid, filter: decades } } : {}),
+            size: 44, gap: 3, space: 24, values: (_, ticks) => ticks.map((t) => (t == null ? "" : formatTick(t))) },
         ],
         series: [
           {},
@@ -118,6 +153,6 @@ export class Charts {
     plot.over.addEventListener("pointermove", (event) => {
       if (event.buttons & 1) seekTo(event);
     });
-    return { plot, marker, values };
+    return { plot, place, marker, values };
   }
 }

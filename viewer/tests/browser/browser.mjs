@@ -62,9 +62,14 @@ export async function grab(page) {
     const canvas = new OffscreenCanvas(image.width, image.height);
     const context = canvas.getContext("2d");
     context.drawImage(image, 0, 0);
-    return Array.from(context.getImageData(0, 0, image.width, image.height).data);
+    const pixels = context.getImageData(0, 0, image.width, image.height).data;
+    return new Promise((done) => {
+      const reader = new FileReader();
+      reader.onload = () => done(reader.result.split(",")[1]);
+      reader.readAsDataURL(new Blob([pixels]));
+    });
   }, png.toString("base64"));
-  return Uint8Array.from(values);
+  return Buffer.from(values, "base64");
 }
 
 /** Number of pixels that differ visibly. */

@@ -98,6 +98,7 @@ async function handle(page) {
   assert(/kg/.test(await page.innerText(".inspector")), "its mass among them");
   await page.keyboard.press("Escape");
 
+  await grab(page); // until the charts lie where they stay
   const chart = await page.locator(".charts section .u-over").first().boundingBox();
   await page.mouse.click(chart.x + chart.width / 4, chart.y + chart.height / 2);
   const [time, end] = await page.$eval("#time", (bar) => [Number(bar.value), Number(bar.max)]);
