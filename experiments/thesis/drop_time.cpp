@@ -17,7 +17,7 @@ std::vector<Json> sweep(Effort effort) {
         points.push_back({{"method", method},
                           {"model", model},
                           {"level", level},
-                          {"repeats", effort == Effort::quick ? 1 : 5}});
+                          {"repeats", effort == Effort::quick ? 3 : 5}});
       }
   return points;
 }
@@ -28,24 +28,15 @@ Json run(const Json& point, const std::string& /*folder*/) {
   const Setup setup = setup_of(point, defaults);
   geometry::GeneratorOptions sphere;
   sphere.shape = "sphere";
-  const std::shared_ptr<const voxel::Shape> shape = prepare(sphere, setup.level, setup.model);
-  std::vector<double> total;
-  std::vector<double> detection;
-  std::vector<double> impulses;
+  const std::shared_ptr<const voxel::Shape> shape = prepare(sphere, setup.level, setup);
   Json record;
-  for (int k = 0; k < point["repeats"].get<int>(); ++k) {
-    World world = world_with_floor(setup);
-    add_unit_body(world, world.add_shape(shape), Vec3(0.0, 0.0, 2.0));
-    Totals totals(world);
-    world.run_until(3.0);
-    total.push_back(1e3 * totals.total_s);
-    detection.push_back(1e3 * totals.collision_s);
-    impulses.push_back(1e3 * totals.impulse_s);
-    totals.write(record);
-  }
-  record["total_ms"] = median(total);
-  record["detection_ms"] = median(detection);
-  record["impulse_ms"] = median(impulses);
+  time_runs(
+      [&] {
+        World world = world_with_floor(setup);
+        add_unit_body(world, world.add_shape(shape), Vec3(0.0, 0.0, 2.0));
+        return world;
+      },
+      3.0, point["repeats"], record);
   return record;
 }
 

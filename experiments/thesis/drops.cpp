@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gotai/core/parallel.h"
 #include "gotai/core/random.h"
 
 namespace gotai::experiments {
@@ -20,8 +21,15 @@ void add_drop(World& world, const Drop& drop) {
 }
 
 Trajectory run_drop(const Setup& setup, const Drop& drop, double duration) {
+  Json unused;
+  return run_drop(setup, drop, duration, unused);
+}
+
+Trajectory run_drop(const Setup& setup, const Drop& drop, double duration, Json& record) {
+  const ThreadLimit one_thread(1);
   World world = world_with_floor(setup);
   add_drop(world, drop);
+  Totals totals(world);
   Trajectory trajectory;
   const int samples = static_cast<int>(std::lround(50.0 * duration));
   for (int k = 1; k <= samples; ++k) {
@@ -31,6 +39,7 @@ Trajectory run_drop(const Setup& setup, const Drop& drop, double duration) {
       if (world.bodies().is_dynamic(i)) row.push_back(world.bodies().x_W[i]);
     trajectory.push_back(row);
   }
+  totals.write(record);
   return trajectory;
 }
 

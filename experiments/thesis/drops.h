@@ -24,8 +24,10 @@ void add_drop(World& world, const Drop& drop);
 /// Centres of mass of all dynamic bodies, sampled every 1/50 s: one row per sample.
 using Trajectory = std::vector<std::vector<Vec3>>;
 
-/// Runs and samples. @param duration  [s]
+/// Runs on one thread and samples. @param duration  [s]
 Trajectory run_drop(const Setup& setup, const Drop& drop, double duration);
+/// The same, and writes the totals of the run into a record.
+Trajectory run_drop(const Setup& setup, const Drop& drop, double duration, Json& record);
 
 /// Mean over bodies and samples of the distance between two trajectories, as a fraction of the
 /// extent.

@@ -16,7 +16,7 @@ namespace {
 std::shared_ptr<const voxel::Shape> cube(const Setup& setup) {
   geometry::GeneratorOptions options;
   options.shape = "cube";
-  return prepare(options, setup.level, setup.model);
+  return prepare(options, setup.level, setup);
 }
 
 /// A point for each level of each model.
@@ -45,7 +45,7 @@ Json run_slip(const Json& point, const std::string& /*folder*/) {
   slab.shape = "cube";
   slab.size = 3.0;
   BodyDescription base;
-  base.shape = world.add_shape(prepare(slab, setup.level, setup.model));
+  base.shape = world.add_shape(prepare(slab, setup.level, setup));
   base.kind = model::BodyKind::fixed;
   base.X_WM.p = Vec3(0.0, 0.0, -1.5);
   world.add_body(base);
@@ -267,7 +267,7 @@ Json run_tunnel(const Json& point, const std::string& /*folder*/) {
   setup.model = point["model"];
   geometry::GeneratorOptions options;
   options.shape = "hexapod";
-  const std::shared_ptr<const voxel::Shape> shape = prepare(options, kFinestPrepared, setup.model);
+  const std::shared_ptr<const voxel::Shape> shape = prepare(options, kFinestPrepared, setup);
   const double sigma = point["safety"];
   const int runs = point["runs"];
   int crossed = 0;

@@ -14,7 +14,7 @@ namespace {
 
 std::vector<Json> sweep(Effort effort) {
   std::vector<Json> points;
-  const double duration = effort == Effort::quick ? 0.2 : 3.0;
+  const double duration = effort == Effort::quick ? 0.5 : 3.0;
   for (const char* model : {"spheres", "surface"})
     for (const char* scene : {"blocks", "rocks"})
       for (const char* method : {"C", "A"}) {
@@ -47,29 +47,20 @@ Json run(const Json& point, const std::string& /*folder*/) {
   defaults.dt = 0.01;
   defaults.restitution = 0.3;
   defaults.friction = 0.3;
+  defaults.exact = false;
   const Setup setup = setup_of(point, defaults);
   const ThreadLimit limit(point["threads"].get<int>());
-  model::Settings settings = settings_of(setup);
-  settings.impulse.solver = model::SolverName::automatic;
-  World world(settings);
-  model::Material material;
-  material.restitution = setup.restitution;
-  material.friction = setup.friction;
-  world.set_default_material(material);
-  world.add_plane({});
+  World world = world_with_floor(setup);
   Random random(7);
   geometry::GeneratorOptions options;
   if (point["scene"] == "blocks") {
     options.shape = "cube";
-    add_grid(world, world.add_shape(prepare(options, 5, setup.model)), 3, 3, 1.4, 0.8, random,
-             false);
+    add_grid(world, world.add_shape(prepare(options, 5, setup)), 3, 3, 1.4, 0.8, random, false);
     options.shape = "hexapod";
-    add_grid(world, world.add_shape(prepare(options, 5, setup.model)), 2, 2, 2.4, 6.0, random,
-             true);
+    add_grid(world, world.add_shape(prepare(options, 5, setup)), 2, 2, 2.4, 6.0, random, true);
   } else {
     options.shape = "rock";
-    add_grid(world, world.add_shape(prepare(options, 5, setup.model)), 4, 4, 1.2, 0.8, random,
-             true);
+    add_grid(world, world.add_shape(prepare(options, 5, setup)), 4, 4, 1.2, 0.8, random, true);
   }
   Totals totals(world);
   world.run_until(point["duration"].get<double>());

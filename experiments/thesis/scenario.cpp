@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <time.h>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <utility>
 
 #include "gotai/core/error.h"
+#include "gotai/core/parallel.h"
 
 namespace gotai::experiments {
 
@@ -26,14 +31,17 @@ model::Settings settings_of(const Setup& setup) {
   settings.collision.model = model::parse_collision_model(setup.model);
   settings.collision.level = setup.level;
   settings.impulse.contacts = model::ContactTreatment::all;
-  if (setup.method == "C") {
+  using model::ContactTreatment;
+  using model::SolverName;
+  if (setup.method == "C" || setup.method == "A") {
     settings.impulse.method = model::ImpulseMethodName::constraint;
-    settings.impulse.solver = model::SolverName::exact;
-    if (setup.model == "surface" && !setup.exact)
-      settings.impulse.solver = model::SolverName::substepped;
-  } else if (setup.method == "A") {
-    settings.impulse.method = model::ImpulseMethodName::constraint;
-    settings.impulse.contacts = model::ContactTreatment::apparent;
+    settings.impulse.solver = setup.exact ? SolverName::exact : SolverName::iterative;
+    if (setup.method == "A") {
+      settings.impulse.contacts = ContactTreatment::apparent;
+    } else if (setup.model == "surface" && !setup.exact) {
+      settings.impulse.contacts = ContactTreatment::reduced;
+      settings.impulse.solver = SolverName::substepped;
+    }
   } else if (setup.method == "I") {
     settings.impulse.method = model::ImpulseMethodName::impulse_averaged;
   } else if (setup.method == "S") {
@@ -57,13 +65,30 @@ World world_with_floor(const Setup& setup) {
   return world;
 }
 
-std::shared_ptr<const voxel::Shape> prepare(const geometry::GeneratorOptions& options, int level,
-                                            const std::string& model) {
+std::shared_ptr<const voxel::Shape> prepare(const geometry::GeneratorOptions& options, int finest,
+                                            const Setup& setup) {
+  return prepare(options.shape, geometry::generate(options), finest, setup);
+}
+
+std::shared_ptr<const voxel::Shape> prepare(const std::string& name, geometry::Mesh mesh,
+                                            int finest, const Setup& setup) {
   voxel::ShapeOptions how;
-  how.prepared_level = level;
-  if (model == "surface") how.surface_level = level;
-  return std::make_shared<const voxel::Shape>(
-      voxel::make_shape(options.shape, geometry::generate(options), how));
+  how.prepared_level = finest;
+  if (setup.model == "surface") how.surface_level = setup.level;
+  static std::mutex mutex;
+  static std::map<std::string, std::shared_ptr<const voxel::Shape>> known;
+  const std::string key = voxel::content_hash(mesh, how).hex();
+  const std::lock_guard lock(mutex);
+  std::shared_ptr<const voxel::Shape>& shape = known[key];
+  if (!shape)
+    shape = std::make_shared<const voxel::Shape>(voxel::make_shape(name, std::move(mesh), how));
+  return shape;
+}
+
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 BodyId add_unit_body(World& world, ShapeId shape, const Vec3& x_W, const Quat& q_WB,
@@ -199,6 +224,38 @@ void Totals::write(Json& record) const {
   record["contacts_max"] = contacts_max_;
   record["overlap_max"] = overlap_max_;
   record["energy_gain"] = energy_gain_;
+}
+
+void time_runs(const std::function<World()>& make_world, double duration, int repeats,
+               Json& record) {
+  const ThreadLimit one_thread(1);
+  std::vector<double> total;
+  std::vector<double> detection;
+  std::vector<double> impulses;
+  for (int k = 0; k < repeats; ++k) {
+    World world = make_world();
+    Totals totals(world);
+    world.run_until(duration);
+    total.push_back(1e3 * totals.total_s);
+    detection.push_back(1e3 * totals.collision_s);
+    impulses.push_back(1e3 * totals.impulse_s);
+    totals.write(record);
+  }
+  record["total_ms"] = median(total);
+  record["detection_ms"] = median(detection);
+  record["impulse_ms"] = median(impulses);
+  record["impulse_least_ms"] = *std::min_element(impulses.begin(), impulses.end());
+}
+
+Verdict falls_with_level(std::string what, const std::vector<double>& errors, double floor) {
+  bool falls = !errors.empty();
+  std::string found;
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    if (k > 0) falls = falls && (errors[k] < errors[k - 1] || errors[k] <= floor);
+    found += fmt::format("{}{:.3g}", k > 0 ? ", " : "", errors[k]);
+  }
+  return {std::move(what), fmt::format("falls with the level, or <= {:.2g}", floor),
+          std::move(found), falls};
 }
 
 std::string label_of(const Json& record) {

@@ -2,6 +2,7 @@
 /// What the thesis's experiments have in common: SI units, g = 9.8 m/s^2, floor z = 0, mass 1 kg.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,7 +29,8 @@ struct Setup {
   double restitution = 0.5;
   double friction = 0.0;
   bool explicit_euler = false;
-  /// Surface contacts: all of them to round-off, or few per patch in sub-steps (many bodies).
+  /// C and A solve to round-off; else as scenes of many bodies are run: by the iterative solver,
+  /// and C with few surface contacts per patch in sub-steps.
   bool exact = true;
 };
 
@@ -41,9 +43,17 @@ model::Settings settings_of(const Setup& setup);
 /// A world with one default material and a floor.
 World world_with_floor(const Setup& setup);
 
-/// A generated shape, prepared to a level with what the collision model needs.
-std::shared_ptr<const voxel::Shape> prepare(const geometry::GeneratorOptions& options, int level,
-                                            const std::string& model);
+/// A generated shape, prepared for the collision model of a setup: the pyramid down to level
+/// `finest`, the surface model at the setup's own level. Prepared once per program.
+std::shared_ptr<const voxel::Shape> prepare(const geometry::GeneratorOptions& options, int finest,
+                                            const Setup& setup);
+
+/// The same of any mesh.
+std::shared_ptr<const voxel::Shape> prepare(const std::string& name, geometry::Mesh mesh,
+                                            int finest, const Setup& setup);
+
+/// Processor time of the calling thread [s]: what a busy machine does to others is not in it.
+double thread_seconds();
 
 /// Adds a 1 kg body by the position of its centre of mass.
 BodyId add_unit_body(World& world, ShapeId shape, const Vec3& x_W,
@@ -92,6 +102,16 @@ struct Totals {
   double lowest_energy_;
   double energy_gain_ = 0.0;
 };
+
+/// Runs a scene several times on one thread and writes the median times of a run (total_ms,
+/// detection_ms, impulse_ms), the least impulse time (impulse_least_ms) and the totals of the last.
+/// @param duration  of a run [s]
+void time_runs(const std::function<World()>& make_world, double duration, int repeats,
+               Json& record);
+
+/// Errors by ascending level fall from each level to the next, or are below `floor`: what is left
+/// there is not the level's (round-off, the step's own error).
+Verdict falls_with_level(std::string what, const std::vector<double>& errors, double floor);
 
 /// "C", "surface" -> "C, surface": label of a line in plots.
 std::string label_of(const Json& record);

@@ -25,7 +25,7 @@ Json run(const Json& point, const std::string& /*folder*/) {
   const Setup setup = setup_of(point, defaults);
   geometry::GeneratorOptions hexapod;
   hexapod.shape = "hexapod";
-  const std::shared_ptr<const voxel::Shape> shape = prepare(hexapod, setup.level, setup.model);
+  const std::shared_ptr<const voxel::Shape> shape = prepare(hexapod, setup.level, setup);
   const Quat upright = Quat::FromTwoVectors(Vec3(1.0, 1.0, 1.0).normalized(), Vec3::UnitZ());
   World world = world_with_floor(setup);
   const double height = touching_height(*shape, upright, setup);

@@ -38,7 +38,7 @@ Json run(const Json& point, const std::string& /*folder*/) {
   geometry::GeneratorOptions sphere;
   sphere.shape = "sphere";
   sphere.size = 2.0 * kRadius;
-  const ShapeId shape = world.add_shape(prepare(sphere, setup.level, setup.model));
+  const ShapeId shape = world.add_shape(prepare(sphere, setup.level, setup));
   const BodyId body =
       add_unit_body(world, shape, Vec3(0.0, 0.0, 2.0), Quat::Identity(), Vec3(2.0, 0.0, 0.0));
   std::vector<double> x;
