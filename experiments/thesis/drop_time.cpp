@@ -48,9 +48,9 @@ Outcome conclude(const std::vector<Record>& records, Effort /*effort*/) {
         at_most(fmt::format("most contacts of {} at level 6 (grow slowly with the level)", method),
                 finest["contacts_max"], 100.0));
   }
-  outcome.plots.push_back(by_level(records, "total_ms", "Fig. 6-4",
-                                   "Falling sphere: computing time", "time for 3 s [ms]", true));
-  outcome.plots.push_back(by_level(records, "impulse_ms", "Fig. 6-5",
+  outcome.plots.push_back(by_level(records, "total_ms", "", "Falling sphere: computing time",
+                                   "time for 3 s [ms]", true));
+  outcome.plots.push_back(by_level(records, "impulse_ms", "",
                                    "Falling sphere: time for the impulses", "time for 3 s [ms]",
                                    true));
   outcome.tables.push_back(

@@ -58,10 +58,9 @@ Outcome conclude(const std::vector<Record>& records, Effort /*effort*/) {
         at_most(fmt::format("impulse time of A / C at level {} (far below)", c["level"].get<int>()),
                 ratio, c["level"].get<int>() <= 3 ? 0.7 : 0.3));
   }
-  outcome.plots.push_back(by_level(shown, "total_ms", "Fig. 6-9",
-                                   "Ten hexapods: computing time, mu = 0.3", "time for 3 s [ms]",
-                                   true));
-  outcome.plots.push_back(by_level(shown, "impulse_ms", "Fig. 6-10",
+  outcome.plots.push_back(by_level(shown, "total_ms", "", "Ten hexapods: computing time, mu = 0.3",
+                                   "time for 3 s [ms]", true));
+  outcome.plots.push_back(by_level(shown, "impulse_ms", "",
                                    "Ten hexapods: time for the impulses, mu = 0.3",
                                    "time for 3 s [ms]", true));
   outcome.tables.push_back(

@@ -55,6 +55,11 @@ Outcome conclude(const std::vector<Record>& records, Effort /*effort*/) {
   for (const Record& r : select(records, {{"model", "surface"}}))
     outcome.verdicts.push_back(within(
         fmt::format("v' of C, surface, level {}", r["level"].get<int>()), r["v_after"], 0.5, 0.02));
+  std::vector<double> surface;
+  for (const Record& r : select(records, {{"model", "surface"}}))
+    surface.push_back(std::abs(r["v_after"].get<double>() - 0.5));
+  outcome.verdicts.push_back(
+      falls_with_level("surface model: error of v', exactly 0.5 [m/s]", surface, 2e-5));
   Table table{"",
               "Velocity after the impact of a flat cube (v = -1, e = 0.5)",
               {{"method", "model", "level", "contacts", "v' [m/s]"}}};
