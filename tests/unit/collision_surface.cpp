@@ -34,17 +34,6 @@ ShapePointer make(const std::string& name, int surface_level, double size = 1.0)
       voxel::make_shape(name, geometry::generate(options), shape_options));
 }
 
-SamplePose to_sample_pose(const Mat3& R, const Vec3& t) {
-  SamplePose pose;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      pose.rotation[static_cast<std::size_t>(3 * i + j)] = static_cast<float>(R(i, j));
-    }
-    pose.translation[static_cast<std::size_t>(i)] = static_cast<float>(t[i]);
-  }
-  return pose;
-}
-
 Vec3 point_of(const voxel::SurfaceTree& tree, std::size_t i) {
   const voxel::PointPacket& p = tree.points[i / voxel::kLanes];
   return {p.x[i % voxel::kLanes], p.y[i % voxel::kLanes], p.z[i % voxel::kLanes]};
@@ -66,7 +55,7 @@ TEST_P(Search, FindsWhatLookingAtEverySampleFinds) {
     const Mat3 R = random.rotation().toRotationMatrix();
     const Vec3 t = random.uniform(0.0, 1.2) * random.unit_vector();
     for (const double margin : {0.0, 0.01, 0.05, 0.3}) {
-      search_field(tree, field, to_sample_pose(R, t), static_cast<float>(margin), search);
+      search_field(tree, field, make_sample_pose(R, t), static_cast<float>(margin), search);
       std::size_t k = 0;
       for (std::size_t i = 0; i < tree.size(); ++i) {
         const voxel::FieldValue exact = voxel::evaluate(field, R * point_of(tree, i) + t);
@@ -106,8 +95,8 @@ TEST_P(Search, GivesTheSameBitsOnEveryKernel) {
   };
   std::size_t found = 0;
   for (int trial = 0; trial < 200; ++trial) {
-    const SamplePose pose = to_sample_pose(random.rotation().toRotationMatrix(),
-                                           random.uniform(0.0, 1.3) * random.unit_vector());
+    const SamplePose pose = make_sample_pose(random.rotation().toRotationMatrix(),
+                                             random.uniform(0.0, 1.3) * random.unit_vector());
     const auto margin = static_cast<float>(random.uniform(0.0, 0.3));
     search_field(a->surface.tree, b->surface.field, pose, margin, portable, Kernel::portable);
     search_field(a->surface.tree, b->surface.field, pose, margin, avx2, Kernel::avx2);

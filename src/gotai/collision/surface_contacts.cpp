@@ -32,16 +32,7 @@ double facing_area(const voxel::SurfaceModel& model, std::uint32_t sample, const
 
 SamplePose sample_pose(const Pose& X_BA, const voxel::SurfaceModel& a,
                        const voxel::SurfaceModel& b) {
-  const Mat3 R = X_BA.q.toRotationMatrix();
-  const Vec3 t = X_BA * a.center - b.center;
-  SamplePose pose;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      pose.rotation[static_cast<std::size_t>(3 * i + j)] = static_cast<float>(R(i, j));
-    }
-    pose.translation[static_cast<std::size_t>(i)] = static_cast<float>(t[i]);
-  }
-  return pose;
+  return make_sample_pose(X_BA.q.toRotationMatrix(), X_BA * a.center - b.center);
 }
 
 // Largest float that is not above the margin, so that searches keep the promise of the margin.

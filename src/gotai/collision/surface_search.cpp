@@ -66,6 +66,14 @@ bool use_avx2(Kernel kernel) {
 
 }  // namespace
 
+SamplePose make_sample_pose(const Mat3& R, const Vec3& t) {
+  using Rows = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>;
+  SamplePose pose{};
+  Eigen::Map<Rows>(pose.rotation.data()) = R.cast<float>();
+  Eigen::Map<Eigen::Vector3f>(pose.translation.data()) = t.cast<float>();
+  return pose;
+}
+
 bool is_available(Kernel kernel) {
   if (kernel != Kernel::avx2) return true;
 #ifdef __x86_64__

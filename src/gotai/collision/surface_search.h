@@ -19,6 +19,8 @@ struct SamplePose {
   std::array<float, 9> rotation;     ///< row by row
   std::array<float, 3> translation;  ///< [m]
 };
+/// The same, rounded from double precision.
+SamplePose make_sample_pose(const Mat3& R, const Vec3& t);
 
 /// A sample and what the field says there.
 struct SurfaceHit {
