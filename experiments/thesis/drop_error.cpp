@@ -190,6 +190,7 @@ Series error_by_time(const std::string& name, const std::vector<Record>& found) 
   series.x = found.front()["curves"]["t"].get<std::vector<double>>();
   for (std::size_t k = 0; k < series.x.size(); ++k) {
     std::vector<double> values;
+    values.reserve(found.size());
     for (const Record& r : found) values.push_back(r["curves"]["error"][k]);
     series.y.push_back(median(values));
   }
