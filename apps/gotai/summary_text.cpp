@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "console.h"
 
 namespace gotai::cli {
@@ -24,6 +26,15 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
         {"other", s.phase_ms.other}}},
       {"contacts", {{"mean", s.contacts.mean}, {"max", s.contacts.max}}},
       {"overlap", {{"max", s.overlap.max}, {"mean", s.overlap.mean}}},
+      {"true_overlap",
+       {{"touching", s.true_overlap.touching},
+        {"mean", s.true_overlap.mean},
+        {"p99", s.true_overlap.p99},
+        {"max", s.true_overlap.max},
+        {"max_m", s.true_overlap.max_m},
+        {"gap3", s.true_overlap.gap3}}},
+      {"step_margin", std::isfinite(s.step_margin) ? nlohmann::ordered_json(s.step_margin)
+                                                   : nlohmann::ordered_json(nullptr)},
       {"energy",
        {{"initial", s.energy.initial}, {"final", s.energy.final}, {"max_gain", s.energy.max_gain}}},
       {"momentum_error", s.momentum_error},
@@ -51,6 +62,17 @@ std::string to_table(const RunSummary& s) {
              fmt::format("{:.4g} mean, {} max", s.contacts.mean, format_count(s.contacts.max)));
   report.row("overlap", fmt::format("{} mean, {} max (the collision model's own)",
                                     format_length(s.overlap.mean), format_length(s.overlap.max)));
+  const TrueOverlap& v = s.true_overlap;
+  report.row("true overlap",
+             fmt::format("{:.3g} % mean, {:.3g} % 99 %, {:.3g} % max ({}) of the size, {} pairs; "
+                         "gap to the third neighbour {:+.2g} %",
+                         100.0 * v.mean, 100.0 * v.p99, 100.0 * v.max, format_length(v.max_m),
+                         format_count(v.touching), 100.0 * v.gap3));
+  if (std::isfinite(s.step_margin)) {
+    report.row("step margin", fmt::format("{:.3g} (below 1: some point moved farther than a "
+                                          "voxel's radius in a step)",
+                                          s.step_margin));
+  }
   report.row("energy", fmt::format("{:.6g} J to {:.6g} J, largest gain {:.2g} J", s.energy.initial,
                                    s.energy.final, s.energy.max_gain));
   report.row("momentum error", fmt::format("{:.2g} of the largest momentum", s.momentum_error));

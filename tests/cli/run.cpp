@@ -35,6 +35,10 @@ TEST(Run, JsonHasEveryDocumentedField) {
   EXPECT_GE(result.at("contacts").at("max"), 16);  // a flat face at level 3
   EXPECT_GT(result.at("contacts").at("mean"), 0.0);
   EXPECT_GE(result.at("overlap").at("max"), result.at("overlap").at("mean"));
+  for (const char* key : {"touching", "mean", "p99", "max", "max_m", "gap3"}) {
+    EXPECT_EQ(result.at("true_overlap").at(key), 0.0) << key << ": sphere contacts hover";
+  }
+  EXPECT_GT(result.at("step_margin"), 0.0);
   EXPECT_LT(result.at("energy").at("final"), result.at("energy").at("initial"));
   // Recovering an overlap lifts bodies a little.
   EXPECT_LT(result.at("energy").at("max_gain"),

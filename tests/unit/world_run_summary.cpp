@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "gotai/geometry/generate.h"
 #include "gotai/world/world.h"
 
@@ -105,6 +108,63 @@ TEST(RunSummary, ABodyBehindAPlaneOrOutsideAContainerHasEscaped) {
     world.add_body(cube_at(outside));
   }
   EXPECT_EQ(RunMonitor(world).summary(world, 0.0).escaped, 4U);
+}
+
+TEST(RunSummary, SaysHowFarTheTrueMeshesOverlap) {
+  World world(level_3(0.01));
+  world.add_shape(cube());
+  world.add_plane({});
+  const double d = std::sqrt(3.0);
+  world.add_body(cube_at({0, 0, 0.49}));         // 0.01 in the floor
+  world.add_body(cube_at({0.97, 0, 0.6}));       // 0.03 in the first, above the floor
+  world.add_body(cube_at({0, 10, 0.5 + 1e-4}));  // touches the floor
+  world.add_body(cube_at({0, 20, 3}));           // touches nothing
+  const TrueOverlap v = measure_true_overlap(world.bodies(), world.shapes());
+  EXPECT_EQ(v.touching, 3U);
+  EXPECT_NEAR(v.max_m, 0.03, 1e-9);
+  EXPECT_NEAR(v.max, 0.03 / d, 1e-9);
+  EXPECT_NEAR(v.p99, 0.03 / d, 1e-9);
+  EXPECT_NEAR(v.mean, 0.04 / d / 3.0, 1e-9);
+}
+
+TEST(RunSummary, SeesCrossedEdgesBetweenVertices) {
+  // Two cubes turned by 45 degrees, about x and about y: only their edges cross, at their middles.
+  World world(level_3(0.01));
+  world.add_shape(cube());
+  const double h = std::sqrt(0.5);
+  BodyDescription below = cube_at({0, 0, 0});
+  below.X_WM.q = Quat(Eigen::AngleAxisd(0.25 * std::numbers::pi, Vec3::UnitX()));
+  BodyDescription above = cube_at({0, 0, 2.0 * h - 0.02});
+  above.X_WM.q = Quat(Eigen::AngleAxisd(0.25 * std::numbers::pi, Vec3::UnitY()));
+  world.add_body(below);
+  world.add_body(above);
+  const TrueOverlap v = measure_true_overlap(world.bodies(), world.shapes());
+  EXPECT_EQ(v.touching, 1U);
+  EXPECT_NEAR(v.max_m, 0.02 * h, 1e-5);  // the nearest way out is along a face's normal
+}
+
+TEST(RunSummary, MeasuresTheThirdNeighbour) {
+  World world(level_3(0.01));
+  world.add_shape(cube());
+  world.add_body(cube_at({0, 0, 0}));
+  world.add_body(cube_at({1.01, 0, 0}));
+  world.add_body(cube_at({0, 1.02, 0}));
+  world.add_body(cube_at({0, 0, 1.03}));
+  const TrueOverlap v = measure_true_overlap(world.bodies(), world.shapes());
+  EXPECT_EQ(v.touching, 0U);
+  EXPECT_NEAR(v.gap3, std::hypot(0.02, 0.03) / std::sqrt(3.0), 1e-9);
+}
+
+TEST(RunSummary, StepMarginFollowsTheFastestBody) {
+  World world(level_3(0.01));
+  world.add_shape(cube());
+  BodyDescription body = cube_at({0, 0, 3});
+  body.velocity = Vec3(10, 0, 0);
+  world.add_body(body);
+  const RunSummary summary = run(world, 0.01);
+  const double radius = world.bodies().voxel_radius[0];
+  EXPECT_NEAR(summary.step_margin, radius / (10.0 * 0.01),
+              0.03 * summary.step_margin);  // gravity counts, too
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "gotai/dynamics/step_control.h"
 #include "gotai/world/measure.h"
 #include "gotai/world/world.h"
 
@@ -69,6 +71,14 @@ std::uint64_t count_escaped(const model::BodyState& bodies) {
   return escaped;
 }
 
+// The step in which no surface point of a dynamic body moves farther than a voxel's radius [s].
+double safe_step(const World& world) {
+  model::Settings settings = world.settings();
+  settings.time.safety = 1.0;
+  settings.time.max_step = std::numeric_limits<double>::infinity();
+  return dynamics::derived_step(world.bodies(), settings);
+}
+
 double ratio(double sum, double count) { return count > 0.0 ? sum / count : 0.0; }
 
 }  // namespace
@@ -77,7 +87,8 @@ RunMonitor::RunMonitor(const World& world)
     : start_time_(world.time()),
       energy_(measure_energy(world.bodies(), world.settings(), 1.0)),
       momentum_(world.momentum()),
-      largest_momentum_(momentum_scale(world.bodies())) {
+      largest_momentum_(momentum_scale(world.bodies())),
+      next_safe_step_(safe_step(world)) {
   totals_.energy.initial = world.energy().total();
 }
 
@@ -94,6 +105,8 @@ void RunMonitor::on_step(const World& world, const model::StepReport& report) {
   totals_.contacts.max = std::max<std::uint64_t>(totals_.contacts.max, report.contacts);
   totals_.overlap.max = std::max(totals_.overlap.max, report.max_overlap);
   overlap_sum_ += report.mean_overlap * report.contacts;
+  totals_.step_margin = std::min(totals_.step_margin, next_safe_step_ / report.dt);
+  next_safe_step_ = safe_step(world);
   totals_.residual_max = std::max(totals_.residual_max, report.solve.residual);
 
   // The correction before the step refers to this step's sub-steps, not to the last one's.
@@ -149,6 +162,7 @@ RunSummary RunMonitor::summary(const World& world, double wall_s) const {
   s.contacts.mean = ratio(s.contacts.mean, steps);
   s.energy.final = world.energy().total();
   s.momentum_error = ratio(momentum_defect_, largest_momentum_);
+  s.true_overlap = measure_true_overlap(bodies, world.shapes());
   s.escaped = count_escaped(bodies);
   s.state_hash = world.state_hash().hex();
   return s;

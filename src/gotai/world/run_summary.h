@@ -4,18 +4,19 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "gotai/core/types.h"
 #include "gotai/model/step.h"
+#include "gotai/world/true_overlap.h"
 
 namespace gotai {
 
 class World;
 
-/// Totals of a run. Times are wall-clock [ms] unless said otherwise; overlap is the collision
-/// model's own, not that of the true meshes.
+/// Totals of a run. Times are wall-clock [ms] unless said otherwise.
 struct RunSummary {
   std::uint64_t bodies =
       0;  ///< dynamic and kinematic ones and fixed shapes; planes, containers not
@@ -44,10 +45,17 @@ struct RunSummary {
     std::uint64_t max = 0;
   } contacts;
 
+  /// The collision model's own, over the whole run.
   struct Overlap {
     double max = 0.0;   ///< [m]
     double mean = 0.0;  ///< [m] over all contacts of all steps
   } overlap;
+
+  TrueOverlap true_overlap;  ///< of the meshes as given, in the final state
+
+  /// Smallest ratio of the step in which no surface point moves farther than a voxel's radius
+  /// [Makino 2007, eq. 4.29] to the step that was made; below 1 contacts had to be found ahead.
+  double step_margin = std::numeric_limits<double>::infinity();
 
   /// As docs/notation.md defines it.
   struct EnergyTotals {
@@ -75,7 +83,7 @@ class RunMonitor {
 
   void on_step(const World& world, const model::StepReport& report);
 
-  /// Totals up to now.
+  /// Totals up to now, and the overlap of the true meshes in the present state.
   /// @param wall_s  time that the run took [s]
   RunSummary summary(const World& world, double wall_s) const;
 
@@ -89,6 +97,7 @@ class RunMonitor {
   Vec3 momentum_ = Vec3::Zero();
   double largest_momentum_ = 0.0;
   double momentum_defect_ = 0.0;
+  double next_safe_step_ = 0.0;       // from the present velocities [s]
   std::vector<double> step_times_;    // [s] simulated, at the end of each step
   std::vector<double> step_seconds_;  // [s] wall
 };

@@ -25,7 +25,7 @@ constexpr double kFarthest = 0.05;
 constexpr double kDeepest = 0.3;  // no point of a ball is deeper inside it
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A mesh with its points and distances.
+/// A mesh with its edges and distances.
 class Surface {
  public:
   explicit Surface(const voxel::Shape& shape)
@@ -35,15 +35,15 @@ class Surface {
     }
     distance_.emplace(shape.mesh, winding_ ? &*winding_ : nullptr);
     for (std::uint32_t v = 0; v < distance_->vertex_count(); ++v) {
-      points_.push_back(distance_->vertex(v));
+      vertices_.push_back(distance_->vertex(v));
     }
     for (std::uint32_t t = 0; t < distance_->triangle_count(); ++t) {
       if (distance_->face_normal(t).isZero()) continue;
+      const auto& corners = distance_->corners(t);
       for (int e = 0; e < 3; ++e) {
         if (distance_->neighbor(t, e) < t) continue;  // the neighbour has this edge
-        const auto& corners = distance_->corners(t);
-        add_edge(distance_->vertex(corners[static_cast<std::size_t>(e)]),
-                 distance_->vertex(corners[static_cast<std::size_t>((e + 1) % 3)]));
+        edges_.push_back(
+            {corners[static_cast<std::size_t>(e)], corners[static_cast<std::size_t>((e + 1) % 3)]});
       }
     }
   }
@@ -51,33 +51,82 @@ class Surface {
   Surface& operator=(const Surface&) = delete;
 
   double diagonal() const { return diagonal_; }
-  const std::vector<Vec3>& points() const { return points_; }
+  const std::vector<Vec3>& vertices() const { return vertices_; }
 
-  /// Least signed gap of another mesh's points in this one [m]; infinite beyond the limit.
-  double least_gap(const std::vector<Vec3>& points, const Pose& X, double limit) const {
+  /// Least signed gap of this mesh's vertices and edges in another one [m]; infinite beyond the
+  /// limit.
+  /// @param X  this mesh's frame in the other's
+  double least_gap_in(const Surface& other, const Pose& X, double limit) const {
+    const double spacing = kPointSpacing * diagonal_;
     double least = limit;
-    for (const Vec3& p : points) {
-      const Vec3 x = X * p;
-      const double near = std::max(least, 0.0);
-      const double outside = box_.squaredExteriorDistance(x);
-      if (outside > near * near) continue;
-      const double deep = outside > 0.0 ? 0.0 : kDeepest * diagonal_;
-      least = std::min(least, distance_->query(x, std::max(near, deep)).distance);
+    const auto measure = [&](const Vec3& x) {
+      const double gap = other.gap(x, std::max(least, 0.0) + spacing);
+      least = std::min(least, gap);
+      return gap;
+    };
+    std::vector<double> at_vertex(vertices_.size());
+    for (std::size_t v = 0; v < vertices_.size(); ++v) at_vertex[v] = measure(X * vertices_[v]);
+    for (const auto& [from, to] : edges_) {
+      const Vec3 a = X * vertices_[from];
+      const Vec3 b = X * vertices_[to];
+      const int parts = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing)));
+      double nearest = std::min(at_vertex[from], at_vertex[to]);
+      int part = at_vertex[from] < at_vertex[to] ? 0 : parts;
+      for (int k = 1; k < parts; ++k) {
+        const double gap = measure(a + (b - a) * k / parts);
+        if (gap >= nearest) continue;
+        nearest = gap;
+        part = k;
+      }
+      // Gaps change by no more than the way along the edge.
+      if (nearest - spacing >= least) continue;
+      descend(measure, a + (b - a) * std::max(part - 1, 0) / parts,
+              a + (b - a) * std::min(part + 1, parts) / parts);
     }
     return least < limit ? least : kInfinity;
   }
 
  private:
-  void add_edge(const Vec3& a, const Vec3& b) {
-    const int count = static_cast<int>((b - a).norm() / (kPointSpacing * diagonal_));
-    for (int k = 1; k < count; ++k) points_.push_back(a + (b - a) * k / count);
+  /// Signed gap of a point in this mesh; infinite if certainly above `near` (>= 0).
+  double gap(const Vec3& x, double near) const {
+    const double outside = box_.squaredExteriorDistance(x);
+    if (outside > near * near) return kInfinity;
+    const double deep = outside > 0.0 ? 0.0 : kDeepest * diagonal_;
+    return distance_->query(x, std::max(near, deep)).distance;
+  }
+
+  // Golden section between two points of an edge; `measure` keeps the least.
+  template <typename Measure>
+  static void descend(const Measure& measure, Vec3 a, Vec3 b) {
+    constexpr int kSteps = 10;
+    const double share = 0.5 * (std::sqrt(5.0) - 1.0);
+    Vec3 c = b - share * (b - a);
+    Vec3 d = a + share * (b - a);
+    double at_c = measure(c);
+    double at_d = measure(d);
+    for (int k = 0; k < kSteps; ++k) {
+      if (at_c < at_d) {
+        b = d;
+        d = c;
+        at_d = at_c;
+        c = b - share * (b - a);
+        at_c = measure(c);
+      } else {
+        a = c;
+        c = d;
+        at_c = at_d;
+        d = a + share * (b - a);
+        at_d = measure(d);
+      }
+    }
   }
 
   Box3 box_;
   double diagonal_;
   std::optional<voxel::WindingTree> winding_;
   std::optional<voxel::SignedDistance> distance_;
-  std::vector<Vec3> points_;
+  std::vector<Vec3> vertices_;
+  std::vector<std::array<std::uint32_t, 2>> edges_;
 };
 
 struct Gap {
@@ -86,7 +135,7 @@ struct Gap {
   double scale;  // diagonal of the smaller body [m]
 };
 
-/// Gaps of a body's points to the faces of a plane or container [m].
+/// Gaps of a body's vertices to the faces of a plane or container [m].
 void add_face_gaps(const model::BodyState& bodies, BodyIndex i, BodyIndex solid,
                    const Surface& surface, double limit, std::vector<Gap>& out) {
   const bool walls = bodies.geometry[solid] == model::Geometry::container;
@@ -94,7 +143,7 @@ void add_face_gaps(const model::BodyState& bodies, BodyIndex i, BodyIndex solid,
   const Vec3& half = bodies.half_extent[solid];
   std::array<double, 5> least;
   least.fill(kInfinity);
-  for (const Vec3& x : surface.points()) {
+  for (const Vec3& x : surface.vertices()) {
     const Vec3 p = X_UM * x;
     least[0] = std::min(least[0], p.z());
     if (!walls || p.z() > half.z()) continue;
@@ -158,8 +207,8 @@ TrueOverlap measure_true_overlap(const model::BodyState& bodies,
       const double reach = bodies.bounding_radius[i] + bodies.bounding_radius[j] + limit;
       if ((bodies.x_W[i] - bodies.x_W[j]).norm() > reach) continue;
       const Pose X_JI = bodies.mesh_pose(j).inverse() * X_WI;
-      const double gap = std::min(other.least_gap(own.points(), X_JI, limit),
-                                  own.least_gap(other.points(), X_JI.inverse(), limit));
+      const double gap = std::min(own.least_gap_in(other, X_JI, limit),
+                                  other.least_gap_in(own, X_JI.inverse(), limit));
       if (gap < limit) found[k].push_back({i, j, gap, scale});
     }
   });

@@ -26,9 +26,9 @@ struct TrueOverlap {
   double gap3 = 0.0;
 };
 
-/// Exact distances to the triangles of one body from the vertices of the other and from points
-/// along its edges (every 1 % of the diagonal), both ways. Independent of the collision models;
-/// takes about 10 us per point near another body, spread over the threads.
+/// Exact distances to the triangles of one body from the vertices of the other and from its edges
+/// (sampled every 1 % of the diagonal, then followed to the deepest point), both ways. Independent
+/// of the collision models; slow, spread over the threads, the same for any number of them.
 /// @param shapes  indexed by BodyState::shape
 TrueOverlap measure_true_overlap(const model::BodyState& bodies,
                                  std::span<const std::shared_ptr<const voxel::Shape>> shapes);
