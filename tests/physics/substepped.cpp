@@ -142,5 +142,34 @@ TEST(Substepped, SameBitsForOneAndTwoThreadsAndTwice) {
   EXPECT_EQ(one, run(1));
 }
 
+// Many pairs in every wave of the solver, so that threads do share the work.
+TEST(Substepped, APileOnItsSurfacesHasTheSameBitsForOneAndTwoThreads) {
+  const auto shape = std::make_shared<const voxel::Shape>(
+      voxel::make_shape("hexapod", geometry::generate({.shape = "hexapod"}),
+                        {.prepared_level = kLevel, .surface_level = kLevel}));
+  const auto run = [&](int threads) {
+    const ThreadLimit limit(threads);
+    model::Settings settings;
+    settings.collision.model = model::CollisionModel::surface;
+    settings.collision.level = kLevel;
+    settings.impulse.contacts = model::ContactTreatment::reduced;
+    settings.time.step = 1.0 / 60.0;
+    World world(settings);
+    world.add_plane({});
+    const ShapeId id = world.add_shape(shape);
+    for (int k = 0; k < 300; ++k) {
+      BodyDescription body;
+      body.shape = id;
+      body.X_WM.p = 2.3 * Vec3(k % 10, (k / 10) % 10, 0.5 + k / 100);
+      body.angular_velocity = Vec3(0.1 * (k % 7), 0.2, 0.3 * (k % 3));
+      world.add_body(body);
+    }
+    world.run_until(1.2);
+    EXPECT_GT(world.contacts().pairs.size(), 150U);
+    return world.state_hash();
+  };
+  EXPECT_EQ(run(1), run(2));
+}
+
 }  // namespace
 }  // namespace gotai

@@ -26,6 +26,12 @@ class ThreadLimit {
   tbb::global_control control_;
 };
 
+/// Threads that parallel_for may use now.
+inline std::size_t thread_count() {
+  return std::min(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism),
+                  static_cast<std::size_t>(std::max(1, tbb::this_task_arena::max_concurrency())));
+}
+
 /// Calls body(i) for every i in [0, count), in any order and on any thread.
 /// @param grain  smallest number of indices worth a task of its own
 template <typename Body>

@@ -6,8 +6,15 @@
 #include <numbers>
 #include <tuple>
 
+#include "gotai/core/parallel.h"
+
 namespace gotai::impulse {
 namespace {
+
+// Smallest numbers worth a task of their own.
+constexpr std::size_t kBatchGrain = 8;  // about 10 us of a sweep
+constexpr std::size_t kPairGrain = 32;
+constexpr std::size_t kBodyGrain = 256;
 
 constexpr int kSubsteps = 8;
 constexpr int kRelaxSweeps = 2;
@@ -29,6 +36,16 @@ Softness softness(double frequency_hz, double h) {
   const double a2 = h * omega * a1;
   const double a3 = 1.0 / (1.0 + a2);
   return {omega / a1, a2 * a3, a3};
+}
+
+/// Calls kernel(first, count) for consecutive groups of batches [begin, end), on any thread.
+template <typename Kernel>
+void for_batches(std::size_t begin, std::size_t end, const Kernel& kernel) {
+  const std::size_t groups = (end - begin + kBatchGrain - 1) / kBatchGrain;
+  parallel_for(groups, 1, [&](std::size_t g) {
+    const std::size_t first = begin + g * kBatchGrain;
+    kernel(first, std::min(kBatchGrain, end - first));
+  });
 }
 
 void set(Lane& lane, std::size_t l, double v) { lane.value[l] = static_cast<float>(v); }
@@ -159,7 +176,8 @@ void SubsteppedConstraint::lay_out_batches(const model::BodyState& bodies,
 }
 
 void SubsteppedConstraint::fill_rows(const model::BodyState& bodies) {
-  for (const model::ContactPair& pair : contacts_->pairs) {
+  parallel_for(contacts_->pairs.size(), kPairGrain, [&](std::size_t p) {
+    const model::ContactPair& pair = contacts_->pairs[p];
     const model::BodyIndex a = pair.body_a;
     const model::BodyIndex b = pair.body_b;
     const Mat3& inverse_I_a = bodies.inverse_I_W[a];
@@ -200,7 +218,7 @@ void SubsteppedConstraint::fill_rows(const model::BodyState& bodies) {
       const Vec3 v = bodies.v_W[a] - bodies.v_W[b];
       set(row.approach, l, n.dot(v) + j_a.dot(bodies.w_W[a]) - j_b.dot(bodies.w_W[b]));
     }
-  }
+  });
 }
 
 void SubsteppedConstraint::load_warm_start(const model::ContactMemory& memory) {
@@ -246,66 +264,72 @@ bool is_sliding(const model::BodyState& bodies, const model::ContactSet& contact
 }  // namespace
 
 void SubsteppedConstraint::share_loads(const model::BodyState& bodies) {
+  const double stopping_speed = settings_.gravity.norm() * plan_.dt;
+  parallel_for(contacts_->pairs.size(), kPairGrain, [&](std::size_t p) {
+    const model::ContactPair& pair = contacts_->pairs[p];
+    if (pair.size() >= 3 && is_sliding(bodies, *contacts_, pair, stopping_speed)) share_load(pair);
+  });
+}
+
+void SubsteppedConstraint::share_load(const model::ContactPair& pair) {
   using Vec6 = Eigen::Matrix<double, 6, 1>;
   using Mat6 = Eigen::Matrix<double, 6, 6>;
-  const double stopping_speed = settings_.gravity.norm() * plan_.dt;
-  for (const model::ContactPair& pair : contacts_->pairs) {
-    if (pair.size() < 3 || !is_sliding(bodies, *contacts_, pair, stopping_speed)) continue;
-    Vec3 center = Vec3::Zero();
-    double area = 0.0;
-    for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-      center += contacts_->area[c] * contacts_->point_W[c];
-      area += contacts_->area[c];
-    }
-    center /= area;
-    double radius = 0.0;
-    for (std::uint32_t c = pair.begin; c < pair.end; ++c)
-      radius = std::max(radius, (contacts_->point_W[c] - center).norm());
-    if (!(radius > 0.0)) continue;
+  Vec3 center = Vec3::Zero();
+  double area = 0.0;
+  for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
+    center += contacts_->area[c] * contacts_->point_W[c];
+    area += contacts_->area[c];
+  }
+  center /= area;
+  double radius = 0.0;
+  for (std::uint32_t c = pair.begin; c < pair.end; ++c)
+    radius = std::max(radius, (contacts_->point_W[c] - center).norm());
+  if (!(radius > 0.0)) return;
 
-    // Unit wrench of a contact about the patch's centre, moments in units of its radius.
-    const auto wrench = [&](std::uint32_t c) {
-      Vec6 unit;
-      unit << contacts_->normal_W[c],
-          (contacts_->point_W[c] - center).cross(contacts_->normal_W[c]) / radius;
-      return unit;
-    };
-    Mat6 gram = Mat6::Zero();
-    Vec6 total = Vec6::Zero();
-    for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-      const Vec6 unit = wrench(c);
-      gram.noalias() += (contacts_->area[c] / area) * unit * unit.transpose();
-      total += static_cast<double>(rows_[slots_[c].row].p_n.value[slots_[c].lane]) * unit;
-    }
-    gram.diagonal().array() += 1e-6;
-    const Vec6 share = gram.ldlt().solve(total) / area;
-    // As far towards even as no contact has to pull: mixtures of equal wrench have equal wrench.
-    double mix = 1.0;
-    for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-      const double even = contacts_->area[c] * wrench(c).dot(share);
-      const double now = rows_[slots_[c].row].p_n.value[slots_[c].lane];
-      if (even < 0.0) mix = std::min(mix, now / (now - even));
-    }
-    for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-      float& p = rows_[slots_[c].row].p_n.value[slots_[c].lane];
-      const double even = contacts_->area[c] * wrench(c).dot(share);
-      p = static_cast<float>(std::max(0.0, p + mix * (even - p)));
-    }
+  // Unit wrench of a contact about the patch's centre, moments in units of its radius.
+  const auto wrench = [&](std::uint32_t c) {
+    Vec6 unit;
+    unit << contacts_->normal_W[c],
+        (contacts_->point_W[c] - center).cross(contacts_->normal_W[c]) / radius;
+    return unit;
+  };
+  Mat6 gram = Mat6::Zero();
+  Vec6 total = Vec6::Zero();
+  for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
+    const Vec6 unit = wrench(c);
+    gram.noalias() += (contacts_->area[c] / area) * unit * unit.transpose();
+    total += static_cast<double>(rows_[slots_[c].row].p_n.value[slots_[c].lane]) * unit;
+  }
+  gram.diagonal().array() += 1e-6;
+  const Vec6 share = gram.ldlt().solve(total) / area;
+  // As far towards even as no contact has to pull: mixtures of equal wrench have equal wrench.
+  double mix = 1.0;
+  for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
+    const double even = contacts_->area[c] * wrench(c).dot(share);
+    const double now = rows_[slots_[c].row].p_n.value[slots_[c].lane];
+    if (even < 0.0) mix = std::min(mix, now / (now - even));
+  }
+  for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
+    float& p = rows_[slots_[c].row].p_n.value[slots_[c].lane];
+    const double even = contacts_->area[c] * wrench(c).dot(share);
+    p = static_cast<float>(std::max(0.0, p + mix * (even - p)));
   }
 }
 
 void SubsteppedConstraint::read_velocities(const model::BodyState& bodies) {
   velocity_.resize(bodies.size() + 1);
   velocity_[0] = {};
-  for (model::BodyIndex i = 0; i < bodies.size(); ++i)
-    velocity_[i + 1] = to_soft(bodies.v_W[i], bodies.w_W[i]);
-  before_ = velocity_;
+  before_.resize(bodies.size() + 1);
+  parallel_for(bodies.size(), kBodyGrain, [&](std::size_t i) {
+    velocity_[i + 1] = before_[i + 1] = to_soft(bodies.v_W[i], bodies.w_W[i]);
+  });
 }
 
 void SubsteppedConstraint::write_changes(const model::BodyState& bodies,
                                          model::Update& update) const {
-  for (model::BodyIndex i = 0; i < bodies.size(); ++i) {
-    if (!bodies.is_dynamic(i)) continue;
+  parallel_for(bodies.size(), kBodyGrain, [&](std::size_t k) {
+    const auto i = static_cast<model::BodyIndex>(k);
+    if (!bodies.is_dynamic(i)) return;
     const SoftBody& now = velocity_[i + 1];
     const SoftBody& then = before_[i + 1];
     Vec3 delta_w;
@@ -314,6 +338,16 @@ void SubsteppedConstraint::write_changes(const model::BodyState& bodies,
       delta_w[c] = static_cast<double>(now.w[c]) - static_cast<double>(then.w[c]);
     }
     update.delta_L[i] = model::angular_momentum(bodies, i, delta_w);
+  });
+}
+
+template <typename Kernel>
+void SubsteppedConstraint::for_waves(const Kernel& kernel) {
+  if (thread_count() == 1) return kernel(0, batches_.size());
+  std::size_t begin = 0;
+  for (const std::size_t end : wave_end_) {
+    for_batches(begin, end, kernel);
+    begin = end;
   }
 }
 
@@ -321,20 +355,30 @@ void SubsteppedConstraint::solve(const model::BodyState& bodies, const std::vect
                                  model::Update& update) {
   read_velocities(bodies);
   const auto inverse_h = static_cast<float>(1.0 / plan_.substep_dt());
-  soft_warm_start(velocity_.data(), batches_.data(), batches_.size(), rows_.data());
-  soft_solve_biased(velocity_.data(), batches_.data(), batches_.size(), rows_.data(), inverse_h);
+  for_waves([&](std::size_t first, std::size_t count) {
+    soft_warm_start(velocity_.data(), batches_.data() + first, count, rows_.data());
+  });
+  for_waves([&](std::size_t first, std::size_t count) {
+    soft_solve_biased(velocity_.data(), batches_.data() + first, count, rows_.data(), inverse_h);
+  });
   write_changes(bodies, update);
 }
 
 void SubsteppedConstraint::relax(const model::BodyState& bodies, model::Update& update) {
   read_velocities(bodies);
   const double h = plan_.substep_dt();
-  soft_advance_gaps(velocity_.data(), batches_.data(), batches_.size(), rows_.data(),
-                    static_cast<float>(h));
+  for_batches(0, batches_.size(), [&](std::size_t first, std::size_t count) {
+    soft_advance_gaps(velocity_.data(), batches_.data() + first, count, rows_.data(),
+                      static_cast<float>(h));
+  });
   for (int sweep = 0; sweep < kRelaxSweeps; ++sweep)
-    soft_relax(velocity_.data(), batches_.data(), batches_.size(), rows_.data(),
-               static_cast<float>(1.0 / h));
-  soft_accumulate(batches_.data(), batches_.size(), rows_.data());
+    for_waves([&](std::size_t first, std::size_t count) {
+      soft_relax(velocity_.data(), batches_.data() + first, count, rows_.data(),
+                 static_cast<float>(1.0 / h));
+    });
+  for_batches(0, batches_.size(), [&](std::size_t first, std::size_t count) {
+    soft_accumulate(batches_.data() + first, count, rows_.data());
+  });
   write_changes(bodies, update);
 }
 
@@ -361,13 +405,16 @@ void SubsteppedConstraint::finish(const model::BodyState& bodies, model::Update&
   const double h = plan_.substep_dt();
   report_.residual = soft_residual(velocity_.data(), batches_.data(), batches_.size(), rows_.data(),
                                    static_cast<float>(1.0 / h));
-  soft_restitution(velocity_.data(), batches_.data(), batches_.size(), rows_.data(),
-                   static_cast<float>(2.0 * settings_.gravity.norm() * plan_.dt));
+  for_waves([&](std::size_t first, std::size_t count) {
+    soft_restitution(velocity_.data(), batches_.data() + first, count, rows_.data(),
+                     static_cast<float>(2.0 * settings_.gravity.norm() * plan_.dt));
+  });
   write_changes(bodies, update);
-  for (const Slot& slot : slots_) {
+  parallel_for(slots_.size(), kBodyGrain, [&](std::size_t k) {
+    const Slot& slot = slots_[k];
     const ContactRow& row = rows_[slot.row];
     update.contact_impulse[slot.contact] = impulse_of(slot, row.total_n, row.total_1, row.total_2);
-  }
+  });
 }
 
 }  // namespace gotai::impulse

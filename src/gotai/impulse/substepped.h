@@ -52,6 +52,11 @@ class SubsteppedConstraint final : public ImpulseMethod {
   /// Only of pairs that slide: there pressure decides the torque of friction. At rest it would
   /// disturb what the solver has found, and piles would creep.
   void share_loads(const model::BodyState& bodies);
+  void share_load(const model::ContactPair& pair);
+  /// Calls kernel(first batch, count): wave after wave, the batches of one on any thread. They
+  /// share no dynamic body, so the bits do not depend on the threads.
+  template <typename Kernel>
+  void for_waves(const Kernel& kernel);
   void read_velocities(const model::BodyState& bodies);
   void write_changes(const model::BodyState& bodies, model::Update& update) const;
 
