@@ -1,6 +1,7 @@
 // Our solvers against Siconos (an independent code for non-smooth dynamics) on the same problems.
 #include <gtest/gtest.h>
 
+#include "gotai/impulse/exact_solver.h"
 #include "gotai/impulse/gauss_seidel_solver.h"
 #include "support/contact_problems.h"
 

@@ -1,6 +1,7 @@
 // The solvers of contact problems against exact solutions, each other and themselves.
 #include <gtest/gtest.h>
 
+#include "gotai/impulse/exact_solver.h"
 #include "gotai/impulse/gauss_seidel_solver.h"
 #include "support/contact_problems.h"
 #include "support/golden.h"

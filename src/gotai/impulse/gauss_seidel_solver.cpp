@@ -149,36 +149,12 @@ void GaussSeidelSolver::update(const ConeProblem& problem, Patch& patch, double 
   }
   for (std::size_t i = 0; i < n; ++i) local.add_impulse(i, -guess_[i], local.y_free);
 
-  newton_.solve(local, &guess_, limit, NewtonSolver::Effort::bounded, patch.solution);
+  newton_.solve(local, &guess_, limit, patch.solution);
   if (!patch.solution.converged) return;  // left to the contact sweeps
   for (std::size_t i = 0; i < n; ++i) {
     problem.add_impulse(patch.begin + i, patch.solution.p[i] - guess_[i], solution.y);
     solution.p[patch.begin + i] = patch.solution.p[i];
   }
-}
-
-void solve_exact(const ConeProblem& problem, const std::vector<Vec3>* guess, double limit,
-                 ConeSolution& solution) {
-  constexpr int rounds = 6;
-  NewtonSolver newton;
-  newton.solve(problem, guess, limit, NewtonSolver::Effort::full, solution);
-  if (solution.converged) return;
-
-  int iterations = solution.iterations;
-  GaussSeidelSolver gauss_seidel;
-  std::vector<Vec3> start(problem.size(), Vec3::Zero());
-  for (int round = 0; round < rounds; ++round) {
-    gauss_seidel.solve(problem, &start, limit, 100 << round, solution);
-    iterations += solution.iterations;
-    start = solution.p;
-    if (solution.converged) break;
-    ConeSolution refined;
-    newton.refine(problem, start, limit, refined);
-    iterations += refined.iterations;
-    if (refined.residual < solution.residual) solution = refined;
-    if (solution.converged) break;
-  }
-  solution.iterations = iterations;
 }
 
 }  // namespace gotai::impulse

@@ -50,11 +50,4 @@ class GaussSeidelSolver {
   NewtonSolver newton_;
 };
 
-/// The exact solver for any island: Newton, and where friction keeps it from converging a few
-/// sweeps of Gauss-Seidel to start anew from.
-/// @param guess  impulses to start from, or nothing
-/// @param limit  residual to reach [m/s]
-void solve_exact(const ConeProblem& problem, const std::vector<Vec3>* guess, double limit,
-                 ConeSolution& solution);
-
 }  // namespace gotai::impulse

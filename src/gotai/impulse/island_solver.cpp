@@ -4,6 +4,7 @@
 
 #include "gotai/core/parallel.h"
 #include "gotai/impulse/contact_kinematics.h"
+#include "gotai/impulse/exact_solver.h"
 #include "gotai/impulse/gauss_seidel_solver.h"
 #include "gotai/impulse/warm_start.h"
 

@@ -14,7 +14,7 @@
 namespace gotai::impulse {
 
 /// Exact for problems up to this many bodies when solver = "auto".
-inline constexpr std::size_t exact_up_to_bodies = 8;
+inline constexpr std::size_t exact_up_to_bodies = 64;
 
 /// What the settings' solver means for a problem: "auto" chooses by size.
 bool uses_exact_solver(const ConeProblem& problem, const model::ImpulseSettings& settings);

@@ -1,6 +1,7 @@
 #include "gotai/impulse/newton_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace gotai::impulse {
@@ -9,9 +10,13 @@ namespace {
 constexpr double softest = 1e9;  // first compliance of approach(), times the stated one
 constexpr int steps_per_compliance = 12;
 constexpr int polish_steps = 30;
+constexpr int refine_steps = 12;
 constexpr int guess_steps = 10;  // of polish() from a guess before approach() is tried
-constexpr int rescue_rounds = 6;
-constexpr int rescue_sweeps = 60;
+// Proximal steps: compliances, times the stated one, each used as long as it pays.
+constexpr std::array<double, 6> proximal_softness = {1e6, 1e5, 1e6, 1e4, 1e5, 1e3};
+constexpr int proximal_rounds = 8;
+constexpr int proximal_polish_steps = 15;
+constexpr double worthwhile_progress = 0.9;  // residual after / before
 
 // What a contact does; the projection on the friction law is smooth within each mode.
 enum class Mode { open, stick, slide };
@@ -49,7 +54,7 @@ void NewtonSolver::start(const ConeProblem& problem, ConeSolution& solution) {
 }
 
 void NewtonSolver::solve(const ConeProblem& problem, const std::vector<Vec3>* guess, double limit,
-                         Effort effort, ConeSolution& solution) {
+                         ConeSolution& solution) {
   start(problem, solution);
   if (guess != nullptr) {
     solution.p = *guess;
@@ -58,11 +63,6 @@ void NewtonSolver::solve(const ConeProblem& problem, const std::vector<Vec3>* gu
     solution.y = problem.y_free;
   }
   approach(problem, solution);
-  const int rounds = effort == Effort::full ? rescue_rounds : 0;
-  for (int round = 0; round < rounds; ++round) {
-    if (polish_twice(problem, limit, polish_steps, solution)) return;
-    relax_contacts(problem, rescue_sweeps, solution);
-  }
   polish_twice(problem, limit, polish_steps, solution);
 }
 
@@ -71,7 +71,34 @@ void NewtonSolver::refine(const ConeProblem& problem, const std::vector<Vec3>& g
   start(problem, solution);
   solution.p = guess;
   solution.y = velocities_of(problem, solution.p);
-  polish_twice(problem, limit, polish_steps, solution);
+  if (polish_twice(problem, limit, refine_steps, solution)) return;
+  solution.p = guess;
+  polish_proximally(problem, limit, solution);
+}
+
+// Steps that do not lower the residual are undone, so that the guess is the worst outcome.
+void NewtonSolver::polish_proximally(const ConeProblem& problem, double limit,
+                                     ConeSolution& solution) {
+  solution.y = velocities_of(problem, solution.p);
+  solution.residual = natural_map_residual(problem, solution.p, solution.y);
+  for (const double softness : proximal_softness) {
+    softness_ = softness;
+    for (int round = 0; round < proximal_rounds && solution.residual > limit; ++round) {
+      const double before = solution.residual;
+      reference_ = solution.p;
+      polish(problem, limit, 1, proximal_polish_steps, solution);
+      solution.y = velocities_of(problem, solution.p);
+      solution.residual = natural_map_residual(problem, solution.p, solution.y);
+      if (!(solution.residual < before)) {
+        solution.p = reference_;
+        solution.y = velocities_of(problem, solution.p);
+        solution.residual = before;
+      }
+      if (solution.residual > worthwhile_progress * before) break;
+    }
+  }
+  softness_ = 1.0;
+  solution.converged = solution.residual <= limit;
 }
 
 // Impulses p_ = P(-c / (softness R)) and their derivative D_ at y; returns |F|, F = y - y_free - J'
@@ -112,7 +139,7 @@ void NewtonSolver::approach(const ConeProblem& problem, ConeSolution& solution) 
     for (int k = 0; k < steps_per_compliance && error > enough; ++k) {
       step_ = F_;
       ++solution.iterations;
-      if (!system_.solve(problem, D_, symmetric, step_)) break;
+      if (!system_.factorise(problem, D_, symmetric) || !system_.solve(step_)) break;
       double length = 1.0;
       double trial_error = 0.0;
       for (;; length *= 0.5) {
@@ -153,7 +180,7 @@ bool NewtonSolver::polish(const ConeProblem& problem, double limit, int least_it
     bool symmetric = true;
     for (std::size_t i = 0; i < problem.size(); ++i) {
       const double mu = problem.friction[i];
-      const double R = problem.compliance[i];
+      const double R = softness_ * problem.compliance[i];
       const double rho = 1.0 / inertness_[i];
       const Vec3& p = solution.p[i];
       const Vec3 slack = problem.velocity(i, solution.y) + R * (p - reference_[i]);
@@ -194,7 +221,7 @@ bool NewtonSolver::polish(const ConeProblem& problem, double limit, int least_it
     if (solution.converged || iteration == max_iterations) return solution.converged;
 
     ++solution.iterations;
-    if (!system_.solve(problem, D_, symmetric, F_)) return false;
+    if (!system_.factorise(problem, D_, symmetric) || !system_.solve(F_)) return false;
     for (std::size_t i = 0; i < problem.size(); ++i) {
       Vec3 motion = Vec3::Zero();
       for (std::uint32_t k = problem.first[i]; k < problem.first[i + 1]; ++k) {
@@ -203,21 +230,6 @@ bool NewtonSolver::polish(const ConeProblem& problem, double limit, int least_it
       solution.p[i] += p_[i] - D_[i] * motion;
     }
     solution.y += F_;
-  }
-}
-
-// Projected Gauss-Seidel, contact by contact: slow but it always gets nearer.
-void NewtonSolver::relax_contacts(const ConeProblem& problem, int sweeps,
-                                  ConeSolution& solution) const {
-  solution.y = velocities_of(problem, solution.p);
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for (std::size_t i = 0; i < problem.size(); ++i) {
-      const Vec3 slack = problem.velocity(i, solution.y) + problem.compliance[i] * solution.p[i];
-      const Vec3 p =
-          project_on_friction(solution.p[i] - slack / (2.0 * inertness_[i]), problem.friction[i]);
-      problem.add_impulse(i, p - solution.p[i], solution.y);
-      solution.p[i] = p;
-    }
   }
 }
 

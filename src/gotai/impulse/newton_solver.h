@@ -25,17 +25,13 @@ namespace gotai::impulse {
 ///             velocities become those of rigid contact, c = 0 instead of c = -R p.
 class NewtonSolver {
  public:
-  /// What to do when friction keeps Newton from converging.
-  enum class Effort {
-    bounded,  ///< give up
-    full,     ///< start anew from sweeps over the contacts, several times
-  };
-
   /// @param guess  impulses to start from (not solution.p itself), or nothing
   /// @param limit  residual to reach [m/s]
   void solve(const ConeProblem& problem, const std::vector<Vec3>* guess, double limit,
-             Effort effort, ConeSolution& solution);
-  /// Only the polishing from a guess: for guesses that are nearly right.
+             ConeSolution& solution);
+  /// Only the polishing from a guess that is nearly right; where many redundant contacts keep it
+  /// from converging, proximal steps: polishing with a compliance that is at rest at the last
+  /// impulses, so that its size does not matter for the result. Never ends worse than the guess.
   void refine(const ConeProblem& problem, const std::vector<Vec3>& guess, double limit,
               ConeSolution& solution);
 
@@ -46,8 +42,8 @@ class NewtonSolver {
                     ConeSolution& solution);
   bool polish(const ConeProblem& problem, double limit, int least_iterations, int max_iterations,
               ConeSolution& solution);
+  void polish_proximally(const ConeProblem& problem, double limit, ConeSolution& solution);
   double evaluate(const ConeProblem& problem, double softness, const Eigen::VectorXd& y);
-  void relax_contacts(const ConeProblem& problem, int sweeps, ConeSolution& solution) const;
 
   NewtonSystem system_;
   std::vector<double> inertness_;  // per contact
@@ -55,6 +51,7 @@ class NewtonSolver {
   std::vector<Vec3> p_;            // impulses at a trial point, or their change
   std::vector<Vec3> defect_;       // P(z) - p
   std::vector<Vec3> reference_;    // impulses at which the compliance is at rest
+  double softness_ = 1.0;          // of polish(), times the stated compliance
   Eigen::VectorXd F_, step_, trial_;
 };
 

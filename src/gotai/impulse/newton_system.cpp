@@ -1,9 +1,5 @@
 #include "gotai/impulse/newton_system.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <utility>
 
@@ -71,13 +67,26 @@ void NewtonSystem::analyse_sparse(const ConeProblem& problem) {
   S_.outerIndexPtr()[n] = at;
 }
 
-bool NewtonSystem::solve(const ConeProblem& problem, const std::vector<Mat3>& D, bool symmetric,
-                         Eigen::VectorXd& r) {
-  return dense_ ? solve_dense(problem, D, symmetric, r) : solve_sparse(problem, D, symmetric, r);
+bool NewtonSystem::factorise(const ConeProblem& problem, const std::vector<Mat3>& D,
+                             bool symmetric) {
+  symmetric_ = symmetric;
+  return dense_ ? factorise_dense(problem, D) : factorise_sparse(problem, D);
 }
 
-bool NewtonSystem::solve_dense(const ConeProblem& problem, const std::vector<Mat3>& D,
-                               bool symmetric, Eigen::VectorXd& r) {
+bool NewtonSystem::solve(Eigen::VectorXd& r) const {
+  if (dense_) {
+    if (symmetric_) {
+      dense_symmetric_.solveInPlace(r);
+    } else {
+      r = dense_general_.solve(r).eval();
+    }
+  } else {
+    r = symmetric_ ? sparse_symmetric_.solve(r).eval() : sparse_general_.solve(r).eval();
+  }
+  return r.allFinite();
+}
+
+bool NewtonSystem::factorise_dense(const ConeProblem& problem, const std::vector<Mat3>& D) {
   const auto n = static_cast<Eigen::Index>(6 * problem.blocks);
   H_.setIdentity(n, n);
   Jacobian DJ;
@@ -91,19 +100,15 @@ bool NewtonSystem::solve_dense(const ConeProblem& problem, const std::vector<Mat
       }
     }
   }
-  if (symmetric) {
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factors(H_);
-    if (factors.info() != Eigen::Success) return false;
-    factors.solveInPlace(r);
-  } else {
-    const Eigen::PartialPivLU<Eigen::Ref<Eigen::MatrixXd>> factors(H_);
-    r = factors.solve(r).eval();
+  if (symmetric_) {
+    dense_symmetric_.compute(H_);
+    return dense_symmetric_.info() == Eigen::Success;
   }
-  return r.allFinite();
+  dense_general_.compute(H_);
+  return true;
 }
 
-bool NewtonSystem::solve_sparse(const ConeProblem& problem, const std::vector<Mat3>& D,
-                                bool symmetric, Eigen::VectorXd& r) {
+bool NewtonSystem::factorise_sparse(const ConeProblem& problem, const std::vector<Mat3>& D) {
   std::fill(values_.begin(), values_.end(), Block::Zero());
   for (std::uint32_t b = 0; b < problem.blocks; ++b) {
     const auto begin = row_.begin() + column_begin_[b];
@@ -123,16 +128,12 @@ bool NewtonSystem::solve_sparse(const ConeProblem& problem, const std::vector<Ma
       }
     }
   }
-  if (symmetric) {
-    const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factors(S_);
-    if (factors.info() != Eigen::Success) return false;
-    r = factors.solve(r).eval();
-  } else {
-    Eigen::SparseLU<Eigen::SparseMatrix<double>> factors(S_);
-    if (factors.info() != Eigen::Success) return false;
-    r = factors.solve(r).eval();
+  if (symmetric_) {
+    sparse_symmetric_.compute(S_);
+    return sparse_symmetric_.info() == Eigen::Success;
   }
-  return r.allFinite();
+  sparse_general_.compute(S_);
+  return sparse_general_.info() == Eigen::Success;
 }
 
 }  // namespace gotai::impulse

@@ -2,7 +2,10 @@
 /// The linear system of one Newton step of a contact problem.
 #pragma once
 
-#include <Eigen/SparseCore>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
 #include <vector>
 
 #include "gotai/impulse/cone_problem.h"
@@ -19,22 +22,24 @@ class NewtonSystem {
 
   /// @param D          3 x 3 per contact [kg]
   /// @param symmetric  all D are symmetric and positive semidefinite
-  /// @param[in,out] r  right-hand side, replaced by the solution
   /// @return false when the matrix is singular to working precision
-  bool solve(const ConeProblem& problem, const std::vector<Mat3>& D, bool symmetric,
-             Eigen::VectorXd& r);
+  bool factorise(const ConeProblem& problem, const std::vector<Mat3>& D, bool symmetric);
+  /// @param[in,out] r  right-hand side, replaced by the solution
+  /// @return false when the solution is not finite
+  bool solve(Eigen::VectorXd& r) const;
 
  private:
   using Block = Eigen::Matrix<double, 6, 6>;
 
-  bool solve_dense(const ConeProblem& problem, const std::vector<Mat3>& D, bool symmetric,
-                   Eigen::VectorXd& r);
-  bool solve_sparse(const ConeProblem& problem, const std::vector<Mat3>& D, bool symmetric,
-                    Eigen::VectorXd& r);
+  bool factorise_dense(const ConeProblem& problem, const std::vector<Mat3>& D);
+  bool factorise_sparse(const ConeProblem& problem, const std::vector<Mat3>& D);
   void analyse_sparse(const ConeProblem& problem);
 
   bool dense_ = true;
+  bool symmetric_ = true;
   Eigen::MatrixXd H_;
+  Eigen::LLT<Eigen::MatrixXd> dense_symmetric_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> dense_general_;
 
   // Sparse: blocks by column, rows ascending; slots_ lists, contact by contact, where the products
   // of its couplings go.
@@ -43,6 +48,8 @@ class NewtonSystem {
   std::vector<std::uint32_t> slots_;
   std::vector<Block> values_;
   Eigen::SparseMatrix<double> S_;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> sparse_symmetric_;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> sparse_general_;
 };
 
 }  // namespace gotai::impulse
