@@ -12,6 +12,7 @@ constexpr int most_iterations = 120;
 constexpr int patience = 8;  // iterations without a better residual
 constexpr int most_restarts = 2;
 constexpr double restart_distance = 1e-3;  // from the boundary, of the first start's
+constexpr double near_distance = 1e-2;     // the same when starting near a given point
 constexpr double good_enough = 1e-7;       // residual / velocity scale: polishing does the rest
 constexpr double towards_boundary = 0.9;   // of the longest step; more after a long step
 constexpr double towards_boundary_fast = 0.99;
@@ -75,17 +76,17 @@ void InteriorPointSolver::start(const ConeProblem& problem) {
   }
 }
 
-// Where the path folds or hugs the boundary, the best point so far, moved inwards, leads on.
-void InteriorPointSolver::restart(const ConeProblem& problem, double distance,
-                                  const ConeSolution& best) {
+// A point of the boundary, moved inwards.
+void InteriorPointSolver::start_near(const ConeProblem& problem, double distance,
+                                     const ConeSolution& point) {
   const double scale = distance * velocity_scale(problem);
-  y_ = best.y;
+  y_ = point.y;
   for (std::size_t i = 0; i < problem.size(); ++i) {
     Contact& contact = contacts_[i];
     const Vec3 target = contact.scale.cwiseProduct(problem.velocity(i, y_));
     const double slip = std::hypot(target.y(), target.z());
     contact.s << std::max(0.0, target.x()) + slip + scale, target.y(), target.z();
-    contact.z = best.p[i];
+    contact.z = point.p[i];
     if (problem.friction[i] > 0.0) contact.z.tail<2>() /= problem.friction[i];
     contact.z.x() += scale / problem.inertness(i);
   }
@@ -193,8 +194,10 @@ void InteriorPointSolver::keep_best(const ConeProblem& problem, int iteration,
   best_iteration_ = iteration;
 }
 
-void InteriorPointSolver::solve(const ConeProblem& problem, double limit, ConeSolution& solution) {
+void InteriorPointSolver::solve(const ConeProblem& problem, const ConeSolution* near, double limit,
+                                ConeSolution& solution) {
   start(problem);
+  if (near != nullptr) start_near(problem, near_distance, *near);
   const double enough = std::max(limit, good_enough * velocity_scale(problem));
   solution.residual = std::numeric_limits<double>::infinity();
   best_iteration_ = 0;
@@ -207,7 +210,8 @@ void InteriorPointSolver::solve(const ConeProblem& problem, double limit, ConeSo
     if (solution.residual <= enough) break;
     if (stuck || solution.iterations - best_iteration_ > patience) {
       if (restarts++ == most_restarts) break;
-      restart(problem, std::pow(restart_distance, restarts), solution);
+      // Where the path folds or hugs the boundary, the best point so far may lead on.
+      start_near(problem, std::pow(restart_distance, restarts), solution);
       best_iteration_ = solution.iterations;
       last_length = 1.0;
       stuck = false;

@@ -29,8 +29,10 @@ class InteriorPointSolver {
   /// Every contact has a finite friction.
   static bool suits(const ConeProblem& problem);
 
+  /// @param near   a point to start near, such as the solution of a problem like this, or nothing
   /// @param limit  residual to reach [m/s]
-  void solve(const ConeProblem& problem, double limit, ConeSolution& solution);
+  void solve(const ConeProblem& problem, const ConeSolution* near, double limit,
+             ConeSolution& solution);
 
  private:
   /// One contact; L-scaled.
@@ -47,7 +49,7 @@ class InteriorPointSolver {
   };
 
   void start(const ConeProblem& problem);
-  void restart(const ConeProblem& problem, double distance, const ConeSolution& best);
+  void start_near(const ConeProblem& problem, double distance, const ConeSolution& point);
   double measure(const ConeProblem& problem);
   void scale_contacts();
   bool factorise(const ConeProblem& problem);

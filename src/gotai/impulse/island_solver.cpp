@@ -1,6 +1,7 @@
 #include "gotai/impulse/island_solver.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "gotai/core/parallel.h"
 #include "gotai/impulse/contact_kinematics.h"
@@ -9,6 +10,12 @@
 #include "gotai/impulse/warm_start.h"
 
 namespace gotai::impulse {
+namespace {
+
+// Residual of an exact solution that counts as none, as a fraction of the velocity scale.
+constexpr double unsolved_residual = 1e-6;
+
+}  // namespace
 
 bool uses_exact_solver(const ConeProblem& problem, const model::ImpulseSettings& settings) {
   return settings.solver == model::SolverName::exact ||
@@ -81,6 +88,23 @@ void IslandSolver::solve_island(const model::BodyState& bodies, const Island& is
     }
   }
   solve_by_settings(work.problem, warm ? &work.guess : nullptr, settings_.impulse, work.solution);
+  const double unsolved = unsolved_residual * velocity_scale(work.problem);
+  if (work.solution.residual > unsolved && uses_exact_solver(work.problem, settings_.impulse)) {
+    solve_plastic(bodies, island, targets, gap, dt, work);
+  }
+}
+
+// With e = 0 the contact problem always has a solution; with restitution and friction bodies that
+// are wedged may leave none.
+void IslandSolver::solve_plastic(const model::BodyState& bodies, const Island& island,
+                                 ContactTargets targets, const std::vector<double>& gap, double dt,
+                                 Work& work) const {
+  std::fill(targets.restitution.begin(), targets.restitution.end(), 0.0);
+  assemble(bodies, *contacts_, island, targets, gap, dt, settings_.gravity.norm(),
+           settings_.impulse.ridge, work.problem, work.frame);
+  ConeSolution plastic;
+  solve_by_settings(work.problem, nullptr, settings_.impulse, plastic);
+  if (plastic.residual < work.solution.residual) work.solution = std::move(plastic);
 }
 
 }  // namespace gotai::impulse

@@ -52,6 +52,8 @@ class IslandSolver {
   void solve_island(const model::BodyState& bodies, const Island& island,
                     const ContactTargets& targets, const std::vector<double>& gap, double dt,
                     Work& work) const;
+  void solve_plastic(const model::BodyState& bodies, const Island& island, ContactTargets targets,
+                     const std::vector<double>& gap, double dt, Work& work) const;
 
   model::Settings settings_;
   const model::ContactSet* contacts_ = nullptr;
