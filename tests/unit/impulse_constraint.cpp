@@ -171,6 +171,37 @@ TEST_P(Constraint, NewtonsCradleFollowsTheLcp) {
   EXPECT_NEAR(scene.bodies.v_W[2].x(), 2.0 / 3.0, tolerance());
 }
 
+TEST_P(Constraint, CatchingABodyAtTheTopOfItsFlightShowsTheBoundOfTheSchemesEnergy) {
+  // E = T + U + dt/2 m g.v changes by p (V + v') / 2 in a step: a body that rises at V < g dt and
+  // is held (v' = 0, p = m (g dt - V)) gains m V (g dt - V) / 2, at most m (g dt)^2 / 8.
+  const double dt = 0.01;
+  const double g = 9.8;
+  const double m = 2.0;
+  double largest = 0.0;
+  for (const double fraction : {-0.5, 0.0, 0.25, 0.5, 0.75, 1.0, 1.5}) {
+    const double V = fraction * g * dt;
+    test::ContactScene scene;
+    scene.surface(0.0, 0.0);
+    const auto body =
+        scene.add_body(m, Mat3::Identity(), Vec3(0, 0, 0.5), Vec3(0, 0, V), Vec3::Zero());
+    const auto floor =
+        scene.add_body(0.0, Mat3::Identity(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero());
+    scene.begin_pair(body, floor);
+    scene.add_contact(Vec3::Zero(), Vec3::UnitZ());
+    const auto energy = [&](double z) {
+      const double v = scene.bodies.v_W[body].z();
+      return 0.5 * m * v * v + m * g * z - 0.5 * dt * m * g * v;
+    };
+    const double before = energy(0.0);
+    scene.strike(*method(), dt, Vec3(0, 0, -g * dt));
+    const double after = energy(scene.bodies.v_W[body].z() * dt);
+    const double p = m * std::max(0.0, g * dt - V);
+    EXPECT_NEAR(after - before, 0.5 * p * V, 1e-8) << fraction;
+    largest = std::max(largest, after - before);
+  }
+  EXPECT_NEAR(largest, m * g * dt * g * dt / 8.0, 1e-8);
+}
+
 TEST_P(Constraint, SlidingSphereBeginsToRollAtFiveSeventhsOfItsSpeed) {
   // Golden sphere_rolling_onset. Each step takes mu g dt from the speed and adds its moment to the
   // spin, until the contact point stands still; then it rolls for ever.

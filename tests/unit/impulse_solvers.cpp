@@ -3,6 +3,7 @@
 
 #include "gotai/impulse/exact_solver.h"
 #include "gotai/impulse/gauss_seidel_solver.h"
+#include "gotai/impulse/interior_point_solver.h"
 #include "support/contact_problems.h"
 #include "support/golden.h"
 
@@ -98,6 +99,47 @@ TEST(Solvers, AgreeOnRandomIslands) {
     }
   }
   RecordProperty("exact_iterations_max", most_iterations);
+}
+
+TEST(Solvers, ExactSolvesIslandsOfManyBodiesAndRedundantContacts) {
+  Random random(5);
+  int most_iterations = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    const ConeProblem problem = test::random_island(random, 30, 300, 0.5, 1e-9);
+    ASSERT_GE(problem.size(), 90U);
+    ConeSolution solution;
+    solve_exact(problem, nullptr, 1e-12, solution);
+    EXPECT_LE(solution.residual, 1e-8) << trial << " n " << problem.size();
+    EXPECT_LE((solution.y - velocities_of(problem, solution.p)).norm(), 1e-12);
+    most_iterations = std::max(most_iterations, solution.iterations);
+  }
+  RecordProperty("iterations_max", most_iterations);
+}
+
+TEST(Solvers, InteriorPointAloneComesNearTheSolution) {
+  Random random(6);
+  for (int trial = 0; trial < 20; ++trial) {
+    const double mu = std::vector<double>{0.0, 0.1, 0.2, 0.3}[static_cast<std::size_t>(trial % 4)];
+    const ConeProblem problem = test::random_island(random, 10, 60, mu, 1e-9);
+    ConeSolution solution;
+    InteriorPointSolver().solve(problem, nullptr, 1e-12, solution);
+    EXPECT_LE(solution.residual, 1e-6 * velocity_scale(problem)) << trial << " mu " << mu;
+    for (std::size_t i = 0; i < problem.size(); ++i) {
+      EXPECT_LE(solution.p[i].tail<2>().norm(), mu * solution.p[i].x() * (1.0 + 1e-12));
+    }
+    // From its own solution it takes few steps.
+    ConeSolution again;
+    InteriorPointSolver().solve(problem, &solution, 1e-12, again);
+    EXPECT_LT(again.iterations, solution.iterations) << trial << " mu " << mu;
+  }
+}
+
+TEST(Solvers, InteriorPointNeedsFiniteFriction) {
+  Random random(8);
+  ConeProblem problem = test::random_island(random, 2, 6, 0.3, 1e-9);
+  EXPECT_TRUE(InteriorPointSolver::suits(problem));
+  problem.friction.back() = ConeProblem::unlimited;
+  EXPECT_FALSE(InteriorPointSolver::suits(problem));
 }
 
 }  // namespace

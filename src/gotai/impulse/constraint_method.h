@@ -17,8 +17,10 @@ namespace gotai::impulse {
 /// or without restitution; redundant contacts share the load evenly, by area; the same bits for any
 /// number of threads.
 /// Does not: propagate shocks one after the other (Newton's cradle leaves with -1/3, 2/3, 2/3;
-/// erratum 48), nor undo overlap. An oblique impact with both friction and restitution can gain a
-/// little energy, as Newton's impact law does (Kane & Levinson 1985).
+/// erratum 48), nor undo overlap. What the energy of the scheme,
+/// T + U + dt/2 sum m g.v, can gain: m (g dt)^2 / 8 when a contact catches a body at the top of its
+/// flight (there the scheme counts so much less than at rest); and a little in oblique impacts with
+/// both friction and restitution, as by Newton's impact law (Kane & Levinson 1985).
 class ConstraintMethod : public ImpulseMethod {
  public:
   explicit ConstraintMethod(const model::Settings& settings);
