@@ -49,11 +49,12 @@ struct Plot {
   std::vector<Series> series;
 };
 
-/// A picture made from live data (an SVG document) with its number in the thesis.
+/// A picture made from live data with its number in the thesis.
 struct Picture {
   std::string figure;
   std::string title;
-  std::string svg;
+  std::string svg;  ///< an SVG document, or
+  std::string png;  ///< a PNG, base64
 };
 
 /// A table with its number in the thesis; the first row is the head.
@@ -63,11 +64,12 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 
-/// A recorded run to play back in the report.
+/// A run to play back in the report, and a strip of pictures of it.
 struct Animation {
   std::string figure;
   std::string title;
-  std::string recording;  ///< path of a recording (HDF5)
+  std::string strip;  ///< PNG, base64
+  std::string run;    ///< the viewer's data, deflated, base64; "" without the viewer
 };
 
 /// What an experiment shows once its records are there.

@@ -6,6 +6,8 @@
 #include <fstream>
 
 #include "gotai/core/error.h"
+#include "gotai/view/pack.h"
+#include "gotai/view/page.h"
 #include "svg.h"
 
 namespace gotai::experiments {
@@ -18,7 +20,10 @@ body { font: 16px/1.5 system-ui, sans-serif; color: var(--ink); background: var(
 h1 { font-size: 1.7rem; } h2 { margin-top: 3rem; border-top: 1px solid var(--line); padding-top: 1.5rem; }
 .thesis { color: #7a8794; font-weight: normal; font-size: .8em; }
 .plots { display: flex; flex-wrap: wrap; gap: 1rem; }
-figure { margin: 0; } figure svg { max-width: 100%; height: auto; border-radius: 6px; }
+figure { margin: 0; } .animation { margin: 1rem 0; } figure img { max-width: 100%; border-radius: 6px; display: block; }
+iframe { width: 100%; height: 34rem; border: 1px solid var(--line); border-radius: 6px; }
+button { font: inherit; padding: .2rem .9rem; margin: .3rem 0; }
+figcaption { font-size: .9rem; } figure svg { max-width: 100%; height: auto; border-radius: 6px; }
 table { border-collapse: collapse; margin: 1rem 0; font-size: .9rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .25rem .7rem; border-bottom: 1px solid var(--line); text-align: left; }
 th { background: var(--soft); }
@@ -26,6 +31,18 @@ caption { text-align: left; font-weight: 600; padding: .3rem 0; }
 .pass { color: var(--good); } .fail { color: var(--bad); font-weight: 600; }
 footer { margin-top: 3rem; color: #7a8794; font-size: .85rem; }
 )css";
+
+// Fills a run into the viewer's page, where viewer/index.html says what it shows.
+constexpr const char* kPlayer = R"js(
+const page = new TextDecoder().decode(Uint8Array.from(atob(document.getElementById('viewer').textContent), c => c.charCodeAt(0)));
+for (const button of document.querySelectorAll('.animation button'))
+  button.addEventListener('click', () => {
+    const frame = document.createElement('iframe');
+    const run = button.nextElementSibling.textContent;
+    frame.srcdoc = page.replace('data-source="file">@GOTAI_RUN@', () => 'data-source="file">' + run);
+    button.replaceWith(frame);
+  });
+)js";
 
 std::string table_html(const Table& table) {
   std::string html = "<table><caption>";
@@ -53,6 +70,38 @@ std::string verdicts_html(const std::vector<Verdict>& verdicts) {
   return html + "</table>\n";
 }
 
+std::string caption(const std::string& figure, const std::string& title) {
+  return "<figcaption>" + escape_xml(figure.empty() ? title : figure + ": " + title) +
+         "</figcaption>";
+}
+
+std::string image(const std::string& png, const std::string& title) {
+  return fmt::format(R"(<img alt="{}" src="data:image/png;base64,{}">)", escape_xml(title), png);
+}
+
+std::string animation_html(const Animation& animation) {
+  std::string html = "<figure class=\"animation\">" + image(animation.strip, animation.title) +
+                     caption(animation.figure, animation.title);
+  if (!animation.run.empty())
+    html += "<button type=\"button\">Play</button><script type=\"text/plain\">" + animation.run +
+            "</script>";
+  return html + "</figure>\n";
+}
+
+/// The viewer, once for all animations, and what opens it.
+std::string player_html(const std::vector<Result>& results) {
+  bool plays = false;
+  for (const Result& result : results)
+    for (const Animation& animation : result.outcome.animations)
+      plays = plays || !animation.run.empty();
+  if (!plays) return "";
+  const std::string_view page = view::page_template();
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(page.data());
+  return "<script type=\"text/plain\" id=\"viewer\">" +
+         view::to_base64(std::span(bytes, page.size())) + "</script>\n<script>" + kPlayer +
+         "</script>\n";
+}
+
 std::string section_html(const Result& result) {
   const Experiment& experiment = *result.experiment;
   std::string html = fmt::format(
@@ -63,11 +112,10 @@ std::string section_html(const Result& result) {
   html += "<div class=\"plots\">\n";
   for (const Plot& plot : result.outcome.plots) html += "<figure>" + plot_svg(plot) + "</figure>\n";
   for (const Picture& picture : result.outcome.pictures)
-    html +=
-        "<figure>" + picture.svg + "<figcaption>" +
-        escape_xml(picture.figure.empty() ? picture.title : picture.figure + ": " + picture.title) +
-        "</figcaption></figure>\n";
+    html += "<figure>" + (picture.png.empty() ? picture.svg : image(picture.png, picture.title)) +
+            caption(picture.figure, picture.title) + "</figure>\n";
   html += "</div>\n";
+  for (const Animation& animation : result.outcome.animations) html += animation_html(animation);
   for (const Table& table : result.outcome.tables) html += table_html(table);
   if (!result.outcome.verdicts.empty()) html += verdicts_html(result.outcome.verdicts);
   return html + "</section>\n";
@@ -102,6 +150,7 @@ std::string report_html(const std::vector<Result>& results) {
                               : "<h1>Gotai: the thesis's figures and tables</h1>\n";
   html += summary_html(results);
   for (const Result& result : results) html += section_html(result);
+  html += player_html(results);
   if (!results.empty()) {
     html += "<footer>";
     for (const auto& [key, value] : results[0].provenance.items())
@@ -128,7 +177,8 @@ void write_results(const Result& result, const std::string& folder) {
   for (std::size_t k = 0; k < result.outcome.plots.size(); ++k)
     write_text(fmt::format("{}/plot-{}.svg", folder, k + 1), plot_svg(result.outcome.plots[k]));
   for (std::size_t k = 0; k < result.outcome.pictures.size(); ++k)
-    write_text(fmt::format("{}/picture-{}.svg", folder, k + 1), result.outcome.pictures[k].svg);
+    if (!result.outcome.pictures[k].svg.empty())
+      write_text(fmt::format("{}/picture-{}.svg", folder, k + 1), result.outcome.pictures[k].svg);
 }
 
 }  // namespace gotai::experiments

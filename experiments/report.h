@@ -9,8 +9,8 @@
 
 namespace gotai::experiments {
 
-/// One page for one or more results: figures by their numbers, tables, verdicts, provenance. No
-/// scripts, no links to other files: it opens anywhere.
+/// One page for one or more results: figures by their numbers, tables, animations in the viewer,
+/// verdicts, provenance. No links to other files: it opens anywhere.
 std::string report_html(const std::vector<Result>& results);
 
 /// Writes what a run leaves in its folder: results.json, results.csv, report.html and one SVG per

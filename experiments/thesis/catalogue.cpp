@@ -5,10 +5,10 @@
 namespace gotai::experiments {
 
 const std::vector<Experiment>& all_experiments() {
-  static const std::vector<Experiment> all{fall(),     superpose(), throw_(),       drop_time(),
-                                           slide(),    pile_time(), pile_error(),   rocks_error(),
-                                           polygons(), parallel(),  cube_on_cube(), stack(),
-                                           spin(),     top(),       tunnel()};
+  static const std::vector<Experiment> all{
+      fall(),         superpose(),   throw_(),   drop_time(), slide(),   pile_time(),
+      pile_error(),   rocks_error(), polygons(), parallel(),  figures(), animations(),
+      cube_on_cube(), stack(),       spin(),     top(),       tunnel()};
   return all;
 }
 

@@ -7,6 +7,21 @@
 #include "gotai/core/random.h"
 
 namespace gotai::experiments {
+namespace {
+
+void add_grid(World& world, ShapeId shape, int per_side, int layers, double spacing, double base,
+              Random& random, bool turned) {
+  for (int k = 0; k < layers; ++k)
+    for (int j = 0; j < per_side; ++j)
+      for (int i = 0; i < per_side; ++i) {
+        const double half = 0.5 * (per_side - 1);
+        const Vec3 x((i - half) * spacing + random.uniform(-0.02, 0.02),
+                     (j - half) * spacing + random.uniform(-0.02, 0.02), base + k * spacing);
+        add_unit_body(world, shape, x, turned ? random.rotation() : Quat::Identity());
+      }
+}
+
+}  // namespace
 
 void add_drop(World& world, const Drop& drop) {
   Random random(drop.seed);
@@ -49,6 +64,20 @@ double mean_error(const Trajectory& a, const Trajectory& b, double extent) {
   for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
     for (std::size_t i = 0; i < a[k].size(); ++i, ++count) sum += (a[k][i] - b[k][i]).norm();
   return count > 0 ? sum / (extent * static_cast<double>(count)) : 0.0;
+}
+
+void add_crowd(World& world, const std::string& scene, const Setup& setup) {
+  Random random(7);
+  geometry::GeneratorOptions options;
+  if (scene == "blocks") {
+    options.shape = "cube";
+    add_grid(world, world.add_shape(prepare(options, 5, setup)), 3, 3, 1.4, 0.8, random, false);
+    options.shape = "hexapod";
+    add_grid(world, world.add_shape(prepare(options, 5, setup)), 2, 2, 2.4, 6.0, random, true);
+  } else {
+    options.shape = "rock";
+    add_grid(world, world.add_shape(prepare(options, 5, setup)), 4, 4, 1.2, 0.8, random, true);
+  }
 }
 
 double step_of_level(int level) { return 1.0 / (50.0 * std::exp2(level - 3)); }

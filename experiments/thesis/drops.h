@@ -33,6 +33,9 @@ Trajectory run_drop(const Setup& setup, const Drop& drop, double duration, Json&
 /// extent.
 double mean_error(const Trajectory& a, const Trajectory& b, double extent);
 
+/// The scenes of Figs. 6-28 and 6-29: "blocks", 27 boxes and 8 hexapods, or "rocks", 64 of them.
+void add_crowd(World& world, const std::string& scene, const Setup& setup);
+
 /// Step for a level: 1/50, 1/100, 1/200, 1/400 s for levels 3, 4, 5, 6.
 double step_of_level(int level);
 

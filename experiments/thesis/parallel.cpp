@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "gotai/core/parallel.h"
-#include "gotai/core/random.h"
 #include "thesis/catalogue.h"
-#include "thesis/scenario.h"
+#include "thesis/drops.h"
 
 namespace gotai::experiments {
 namespace {
@@ -30,18 +29,6 @@ std::vector<Json> sweep(Effort effort) {
   return points;
 }
 
-void add_grid(World& world, ShapeId shape, int per_side, int layers, double spacing, double base,
-              Random& random, bool turned) {
-  for (int k = 0; k < layers; ++k)
-    for (int j = 0; j < per_side; ++j)
-      for (int i = 0; i < per_side; ++i) {
-        const double half = 0.5 * (per_side - 1);
-        const Vec3 x((i - half) * spacing + random.uniform(-0.02, 0.02),
-                     (j - half) * spacing + random.uniform(-0.02, 0.02), base + k * spacing);
-        add_unit_body(world, shape, x, turned ? random.rotation() : Quat::Identity());
-      }
-}
-
 Json run(const Json& point, const std::string& /*folder*/) {
   Setup defaults;
   defaults.dt = 0.01;
@@ -51,17 +38,7 @@ Json run(const Json& point, const std::string& /*folder*/) {
   const Setup setup = setup_of(point, defaults);
   const ThreadLimit limit(point["threads"].get<int>());
   World world = world_with_floor(setup);
-  Random random(7);
-  geometry::GeneratorOptions options;
-  if (point["scene"] == "blocks") {
-    options.shape = "cube";
-    add_grid(world, world.add_shape(prepare(options, 5, setup)), 3, 3, 1.4, 0.8, random, false);
-    options.shape = "hexapod";
-    add_grid(world, world.add_shape(prepare(options, 5, setup)), 2, 2, 2.4, 6.0, random, true);
-  } else {
-    options.shape = "rock";
-    add_grid(world, world.add_shape(prepare(options, 5, setup)), 4, 4, 1.2, 0.8, random, true);
-  }
+  add_crowd(world, point["scene"], setup);
   Totals totals(world);
   world.run_until(point["duration"].get<double>());
   Json record;
