@@ -75,7 +75,7 @@ class Pair {
       bodies_.shape[body] = i;
       bodies_.p_MB[body] = shapes_[i]->mass.center_of_mass;
       bodies_.bounding_radius[body] = shapes_[i]->bounding_radius;
-      exact_.push_back(std::make_unique<const voxel::SignedDistance>(shapes_[i]->mesh));
+      exact_.push_back(std::make_unique<const collision::ExactSurface>(*shapes_[i]));
     }
     place(1, {});
   }
@@ -94,7 +94,7 @@ class Pair {
   }
 
   std::vector<ShapePointer> shapes_;
-  std::vector<std::unique_ptr<const voxel::SignedDistance>> exact_;
+  std::vector<std::unique_ptr<const collision::ExactSurface>> exact_;
   model::BodyState bodies_;
   model::ContactSet contacts_;
   collision::SurfaceScratch scratch_;

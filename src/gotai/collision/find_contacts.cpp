@@ -98,15 +98,48 @@ struct CollisionCache::Storage {
   // Per shape. The shapes are kept alive, so that a tree is known by its shape's address.
   std::vector<std::shared_ptr<const voxel::Shape>> shapes;
   std::vector<SphereTree> trees;
-  std::vector<std::unique_ptr<const voxel::SignedDistance>> exact;
+  std::vector<std::unique_ptr<const ExactSurface>> exact;
   std::vector<bool> has_exact;  // exact is what the shape allows
   std::vector<Chunk> chunks;
+  // What the last search of each pair leaves for the next: as `candidates`, of this and the last
+  // step.
+  struct Remembered {
+    BodyPair pair;
+    std::array<std::uint32_t, 2> shape{};  // of the two bodies, when it was learnt
+    NearPair near;
+  };
+  std::vector<Remembered> remembered;
+  std::vector<Remembered> before;
+  std::size_t before_count =
+      0;  // of `before` when it is next swapped; entries are kept for storage
   tbb::enumerable_thread_specific<SphereScratch> scratch;
   tbb::enumerable_thread_specific<SurfaceScratch> surface_scratch;
 
   void refresh_shapes(Shapes current, bool with_sphere_trees, bool with_exact_surfaces);
   void refresh_radii(const model::BodyState& bodies, const model::CollisionSettings& settings);
+  void carry_over_memories(const model::BodyState& bodies);
 };
+
+// What is known of pairs stays with those that are still candidates and have the same shapes.
+// Whose bodies those are does not matter: what is known holds for shapes and their relative pose.
+void CollisionCache::Storage::carry_over_memories(const model::BodyState& bodies) {
+  std::swap(remembered, before);
+  if (remembered.size() < candidates.size()) remembered.resize(candidates.size());
+  std::size_t old = 0;
+  const auto key = [](const BodyPair& pair) { return std::pair(pair.body_a, pair.body_b); };
+  for (std::size_t p = 0; p < candidates.size(); ++p) {
+    Remembered& now = remembered[p];
+    now.pair = candidates[p];
+    for (NearSamples& near : now.near) near.forget();
+    const std::array<std::uint32_t, 2> shape = {bodies.shape[now.pair.body_a],
+                                                bodies.shape[now.pair.body_b]};
+    now.shape = shape;
+    while (old < before_count && key(before[old].pair) < key(now.pair)) ++old;
+    if (old == before_count || before[old].pair != now.pair || before[old].shape != shape) continue;
+    std::swap(now.near, before[old].near);
+  }
+  before_count = candidates.size();
+}
 
 void CollisionCache::Storage::refresh_shapes(Shapes current, bool with_sphere_trees,
                                              bool with_exact_surfaces) {
@@ -117,6 +150,7 @@ void CollisionCache::Storage::refresh_shapes(Shapes current, bool with_sphere_tr
   for (std::size_t s = 0; s < current.size(); ++s) {
     const voxel::Shape& shape = *current[s];
     if (shapes[s] != current[s]) {
+      before_count = 0;
       trees[s] = {};
       has_exact[s] = false;
     }
@@ -124,7 +158,7 @@ void CollisionCache::Storage::refresh_shapes(Shapes current, bool with_sphere_tr
     // A shape with warnings has parts that only winding numbers tell apart.
     if (with_exact_surfaces && !has_exact[s]) {
       const bool is_simple = shape.warnings.empty() && voxel::has_closed_surface(shape.mesh);
-      exact[s] = is_simple ? std::make_unique<const voxel::SignedDistance>(shape.mesh) : nullptr;
+      exact[s] = is_simple ? std::make_unique<const ExactSurface>(shape) : nullptr;
       has_exact[s] = true;
     }
     if (with_sphere_trees && trees[s].pyramid == nullptr) {
@@ -165,6 +199,7 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
                          surface && options.contacts == model::ContactTreatment::reduced);
   storage.refresh_radii(bodies, settings);
   storage.broad_phase.find_pairs(bodies, storage.radius, margin, storage.candidates);
+  if (surface) storage.carry_over_memories(bodies);
 
   // Pairs are cut into chunks by their number alone and joined in order: the result does not depend
   // on the number of threads.
@@ -183,7 +218,7 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
       scratch.reduction_error = 0.0;
       for (std::size_t p = c * size; p < end; ++p) {
         append_surface_contacts(bodies, storage.candidates[p], shapes, storage.exact, margin,
-                                options, scratch, chunk.contacts);
+                                options, scratch, chunk.contacts, &storage.remembered[p].near);
       }
       chunk.tests[0] = scratch.search.tests;
       chunk.reduction_error = scratch.reduction_error;

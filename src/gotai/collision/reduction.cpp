@@ -8,42 +8,66 @@
 namespace gotai::collision {
 namespace {
 
-double squared_distance(const ContactCandidate& x, const ContactCandidate& y, double inverse) {
-  const Vec3 moment = x.point_A.cross(x.normal_A) - y.point_A.cross(y.normal_A);
-  return (x.normal_A - y.normal_A).squaredNorm() + moment.squaredNorm() * (inverse * inverse);
-}
+float square(float x) { return x * x; }
 
 class Chooser {
  public:
   Chooser(std::span<ContactCandidate> candidates, const ReductionScale& scale, Reduction& reduction)
       : candidates_(candidates), scale_(scale), reduction_(reduction) {
+    const std::size_t n = candidates.size();
     reduction_.kept.clear();
-    reduction_.distance.assign(candidates.size(), std::numeric_limits<double>::infinity());
-    reduction_.likeness.assign(candidates.size(), std::numeric_limits<double>::infinity());
-    reduction_.nearest.assign(candidates.size(), 0);
-    for (std::uint32_t i = 1; i < candidates.size(); ++i) {
+    reduction_.distance.assign(n, std::numeric_limits<float>::infinity());
+    reduction_.likeness.assign(n, std::numeric_limits<float>::infinity());
+    reduction_.nearest.assign(n, 0);
+    reduction_.reaches.resize(n);
+    reduction_.weight.resize(n);
+    for (std::vector<float>& part : reduction_.wrench) part.resize(n);
+    for (std::uint32_t i = 1; i < n; ++i) {
       if (candidates[i].gap < candidates[deepest_].gap) deepest_ = i;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const ContactCandidate& c = candidates[i];
+      const Vec3 moment = c.point_A.cross(c.normal_A) / scale.length;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        reduction_.wrench[axis][i] = static_cast<float>(c.normal_A[static_cast<int>(axis)]);
+        reduction_.wrench[3 + axis][i] = static_cast<float>(moment[static_cast<int>(axis)]);
+      }
+      reduction_.reaches[i] = static_cast<float>((c.gap - candidates[deepest_].gap) / scale.reach);
+      reduction_.weight[i] = 1.0F / (1.0F + square(reduction_.reaches[i]));
     }
   }
 
   void keep(std::uint32_t chosen) {
     const auto position = static_cast<std::uint32_t>(reduction_.kept.size());
     reduction_.kept.push_back(chosen);
-    for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
-      const double d = squared_distance(candidates_[i], candidates_[chosen], 1.0 / scale_.length);
-      const double likeness = d + squared_reaches(candidates_[i].gap - candidates_[chosen].gap);
-      reduction_.distance[i] = std::min(reduction_.distance[i], d);
-      if (likeness < reduction_.likeness[i]) {
-        reduction_.likeness[i] = likeness;
-        reduction_.nearest[i] = position;
-      }
+    const auto& wrench = reduction_.wrench;
+    std::array<const float*, 6> w;
+    std::array<float, 6> of_chosen;
+    for (std::size_t k = 0; k < 6; ++k) {
+      w[k] = wrench[k].data();
+      of_chosen[k] = wrench[k][chosen];
     }
-    reduction_.distance[chosen] = -1.0;
-    reduction_.likeness[chosen] = -1.0;
-    reduction_.nearest[chosen] = position;
+    const float* reaches = reduction_.reaches.data();
+    const float reaches_of_chosen = reaches[chosen];
+    float* distance = reduction_.distance.data();
+    float* likeness = reduction_.likeness.data();
+    std::uint32_t* nearest = reduction_.nearest.data();
+    const std::size_t n = candidates_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const float d = ((square(w[0][i] - of_chosen[0]) + square(w[1][i] - of_chosen[1])) +
+                       (square(w[2][i] - of_chosen[2]) + square(w[3][i] - of_chosen[3]))) +
+                      (square(w[4][i] - of_chosen[4]) + square(w[5][i] - of_chosen[5]));
+      const float alike = d + square(reaches[i] - reaches_of_chosen);
+      distance[i] = d < distance[i] ? d : distance[i];
+      nearest[i] = alike < likeness[i] ? position : nearest[i];
+      likeness[i] = alike < likeness[i] ? alike : likeness[i];
+    }
+    distance[chosen] = -1.0F;
+    likeness[chosen] = -1.0F;
+    nearest[chosen] = position;
   }
 
-  bool is_kept(std::uint32_t i) const { return reduction_.distance[i] < 0.0; }
+  bool is_kept(std::uint32_t i) const { return reduction_.distance[i] < 0.0F; }
 
   void keep_remembered(std::span<const model::ContactMemory::Entry> remembered) {
     struct Carrier {
@@ -79,23 +103,23 @@ class Chooser {
   }
 
   void keep_farthest() {
+    const auto same = static_cast<float>(scale_.resolution * scale_.resolution);
     for (;;) {
       std::uint32_t farthest = 0;
-      double most_wanted = -1.0;
-      double largest = 0.0;
+      float most_wanted = -1.0F;
+      float largest = 0.0F;
       for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
-        const double squared = reduction_.distance[i];
+        const float squared = reduction_.distance[i];
         largest = std::max(largest, squared);
-        if (squared <= scale_.resolution * scale_.resolution) continue;
-        const double wanted =
-            squared / (1.0 + squared_reaches(candidates_[i].gap - candidates_[deepest_].gap));
+        if (squared <= same) continue;
+        const float wanted = squared * reduction_.weight[i];
         if (wanted > most_wanted) {
           most_wanted = wanted;
           farthest = i;
         }
       }
-      reduction_.error = std::sqrt(largest);
-      if (reduction_.kept.size() >= kMaxReduced || most_wanted < 0.0) return;
+      reduction_.error = std::sqrt(static_cast<double>(largest));
+      if (reduction_.kept.size() >= kMaxReduced || most_wanted < 0.0F) return;
       keep(farthest);
     }
   }
@@ -122,11 +146,6 @@ class Chooser {
   }
 
  private:
-  double squared_reaches(double gap_difference) const {
-    const double reaches = gap_difference / scale_.reach;
-    return reaches * reaches;
-  }
-
   // Mean distance of the area from its centre, which friction against spinning acts on under even
   // pressure [m].
   template <typename Place>

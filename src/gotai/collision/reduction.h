@@ -3,6 +3,7 @@
 /// [Makino 2007, chapter 5].
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -44,9 +45,13 @@ struct Reduction {
   /// Every unit wrench of a candidate, (normal, arm x normal / length), is nearer than this to one
   /// that is kept: the error of any load is at most this times the sum of its impulses.
   double error = 0.0;
-  std::vector<double> distance;        // squared, to the nearest kept wrench
-  std::vector<double> likeness;        // squared distance of wrench and gap to `nearest`
-  std::vector<std::uint32_t> nearest;  // position in `kept` of the one most alike
+  // Per candidate, in single precision: plain arrays, which compilers turn into vector loops.
+  std::array<std::vector<float>, 6> wrench;  // normal, moment / length
+  std::vector<float> reaches;                // gap above the deepest / reach
+  std::vector<float> weight;                 // 1 for the deepest, less above it
+  std::vector<float> distance;               // squared, to the nearest kept wrench
+  std::vector<float> likeness;               // squared distance of wrench and gap to `nearest`
+  std::vector<std::uint32_t> nearest;        // position in `kept` of the one most alike
 };
 
 /// Chooses at most kMaxReduced candidates: those that carried the largest impulses in the last step

@@ -49,6 +49,8 @@ constexpr double kFarthestReach = 0.1;
 constexpr double kApproachSafety = 1.3;
 // The deepest contact is taken beside remembered ones only if deeper by this fraction of the size.
 constexpr double kDepthStep = 2e-4;
+// Interpolated distances are off by less than half the diagonal of a cell [cells].
+constexpr double kFieldError = 0.9;
 
 // How two bodies move against each other, in the frame of body a (its axes, its centre of mass).
 class PairMotion {
@@ -67,11 +69,13 @@ class PairMotion {
   }
 
   double size() const { return size_; }
+  // No point of a moves farther against b in the step [m].
+  double farthest() const { return fastest_ * dt_; }
 
   // The margin up to which contacts of this pair matter in the step [m].
   double reach(double margin) const {
     if (!(dt_ > 0.0)) return margin;
-    const double needed = kRestReach * size_ + fastest_ * dt_;
+    const double needed = kRestReach * size_ + farthest();
     return std::min({margin, needed, between_shapes_ ? kFarthestReach * size_ : needed});
   }
 
@@ -102,34 +106,42 @@ class FieldContacts {
                   : relative_pose(bodies.mesh_pose(pair.body_b), bodies.mesh_pose(pair.body_a))),
         R_QP_(X_QP_.q.toRotationMatrix()) {}
 
-  void append(double margin, const PairMotion& motion, SurfaceScratch& scratch) const {
-    search_field(samples_.tree, field_.field, sample_pose(X_QP_, samples_, field_),
-                 search_margin(margin), scratch.search);
+  void append(double margin, const PairMotion& motion, NearSamples* near,
+              SurfaceScratch& scratch) const {
+    const SamplePose pose = sample_pose(X_QP_, samples_, field_);
+    if (near != nullptr) {
+      search_field(samples_, field_.field, pose, search_margin(margin), motion.farthest(), *near,
+                   scratch.search);
+    } else {
+      search_field(samples_.tree, field_.field, pose, search_margin(margin), scratch.search);
+    }
     for (const SurfaceHit& hit : scratch.search.hits) append(hit, motion, scratch.candidates);
   }
 
-  // Replaces the gap by the distance to Q's triangles. A sample of an edge first slides to where
-  // its edge is nearest, if that is between it and its neighbours: with flat faces on both sides of
-  // the nearest point, where the two lines of the distance along the edge cross.
-  void refine(const voxel::SignedDistance& exact, ContactCandidate& c) const {
+  // Replaces gap and normal by those of Q's triangles. A sample of a face first gives way to the
+  // deepest of the mesh's vertices around it. A sample of an edge slides to where its edge is
+  // nearest, if that is between it and its neighbours: with flat faces on both sides of the nearest
+  // point, where the two lines of the distance along the edge cross. The normal remains the field's
+  // where the nearest point is on an edge: there the field's is a mean that does not jump.
+  void refine(const ExactSurface& exact, ContactCandidate& c) const {
     const auto sample = static_cast<std::uint32_t>(c.feature);
-    const double cell = field_.field.cell;
-    const double limit = std::abs(c.gap) + 4.0 * cell;
-    const Vec3 own_P = sample_point(samples_, sample);
+    const FieldPoint own = deepest_vertex(sample, c.gap);
+    const double error = kFieldError * field_.field.cell;
+    const double limit = std::abs(own.distance) + error;
     const std::int32_t edge = samples_.tree.edge[sample];
     const Vec3 edge_P =
         edge < 0 ? Vec3(Vec3::Zero())
                  : to_double(samples_.tree.edge_direction[static_cast<std::size_t>(edge)]);
-    Slid best = slide(exact, own_P, edge_P, 0.0, limit);
+    Slid best = slide(exact, own.x_P, edge_P, 0.0, limit);
     if (edge >= 0 && std::isfinite(best.distance)) {
       const auto& reach = samples_.tree.edge_reach[static_cast<std::size_t>(edge)];
       const double far =
           best.slope < 0.0 ? static_cast<double>(reach[1]) : -static_cast<double>(reach[0]);
-      const Slid end = slide(exact, own_P, edge_P, far, limit);
+      const Slid end = slide(exact, own.x_P, edge_P, far, limit + std::abs(far));
       if (far != 0.0 && std::isfinite(end.distance) && end.slope * best.slope < 0.0) {
         const double along =
             (end.distance - end.slope * far - best.distance) / (best.slope - end.slope);
-        const Slid crossing = slide(exact, own_P, edge_P, along, limit);
+        const Slid crossing = slide(exact, own.x_P, edge_P, along, limit + std::abs(far));
         if (std::abs(along) <= std::abs(far) && along * far >= 0.0 &&
             crossing.distance < best.distance) {
           best = crossing;
@@ -137,9 +149,14 @@ class FieldContacts {
       }
     }
     // Fields are never off by more: a larger difference means that the sides were mistaken.
-    if (!(std::abs(best.distance - c.gap) <= 3.0 * cell)) return;
+    if (!(best.distance <= own.distance + error && best.distance >= own.distance - 3.0 * error)) {
+      return;
+    }
     c.gap = best.distance;
-    const Vec3 moved_P = own_P + best.along * edge_P;
+    if (!best.face_Q.isZero()) {
+      c.normal_A = samples_of_b_ ? Vec3(-best.face_Q) : Vec3(R_QP_.transpose() * best.face_Q);
+    }
+    const Vec3 moved_P = own.x_P + best.along * edge_P;
     c.point_A =
         samples_of_b_ ? Vec3(X_QP_ * moved_P - p_MA_ + c.gap * c.normal_A) : Vec3(moved_P - p_MA_);
   }
@@ -148,12 +165,12 @@ class FieldContacts {
   // in a step. Following edges and faces would be exact for one pose, but their nearest points and
   // normals jump as bodies rock, and piles never rest (of 500 hexapods 492 kept moving, at 3e-3
   // m/s).
-  void refine_in_place(const voxel::SignedDistance& exact, ContactCandidate& c) const {
+  void refine_in_place(const ExactSurface& exact, ContactCandidate& c) const {
     const auto sample = static_cast<std::uint32_t>(c.feature);
-    const double cell = field_.field.cell;
+    const double error = kFieldError * field_.field.cell;
     const Vec3 own_P = sample_point(samples_, sample);
-    const double distance = exact.query(X_QP_ * own_P, std::abs(c.gap) + 4.0 * cell).distance;
-    if (!(std::abs(distance - c.gap) <= 3.0 * cell)) return;
+    const double distance = exact.nearest(X_QP_ * own_P, std::abs(c.gap) + error).distance;
+    if (!(std::abs(distance - c.gap) <= error)) return;
     c.gap = distance;
     if (samples_of_b_) c.point_A = X_QP_ * own_P - p_MA_ + c.gap * c.normal_A;
   }
@@ -183,27 +200,49 @@ class FieldContacts {
     c.feature = surface_feature(samples_of_b_ ? 1 : 0, hit.sample);
     // Where a field is smooth its slope is 1.
     constexpr double kSmooth = 0.005;
-    c.near_edge = std::abs(length - 1.0) > kSmooth || samples_.tree.edge[hit.sample] >= 0;
+    c.near_edge =
+        std::abs(length - 1.0) > kSmooth || samples_.tree.edge[hit.sample] >= 0 ||
+        samples_.tree.first_vertex[hit.sample] < samples_.tree.first_vertex[hit.sample + 1];
     if (motion.may_close(c)) out.push_back(c);
+  }
+
+  struct FieldPoint {
+    Vec3 x_P;
+    double distance;  // in Q's field
+  };
+  // A sample or, if deeper, one of the vertices that it stands for.
+  FieldPoint deepest_vertex(std::uint32_t sample, double gap) const {
+    const voxel::SurfaceTree& tree = samples_.tree;
+    FieldPoint deepest{sample_point(samples_, sample), gap};
+    for (std::uint32_t v = tree.first_vertex[sample]; v < tree.first_vertex[sample + 1]; ++v) {
+      const Vec3 x_P = samples_.center + to_double(tree.vertex[v]);
+      const double distance = voxel::evaluate(field_.field, X_QP_ * x_P - field_.center).distance;
+      if (distance < deepest.distance) deepest = {x_P, distance};
+    }
+    return deepest;
   }
 
   // Distance of a sample of P to Q's triangles after sliding along its edge, and how it changes.
   struct Slid {
     double along = 0.0;  // [m]
     double distance = std::numeric_limits<double>::infinity();
-    double slope = 0.0;  // of the distance along the edge
+    double slope = 0.0;          // of the distance along the edge
+    Vec3 face_Q = Vec3::Zero();  // outward normal where the nearest point is inside a face, else 0
   };
-  Slid slide(const voxel::SignedDistance& exact, const Vec3& own_P, const Vec3& edge_P,
-             double along, double limit) const {
+  Slid slide(const ExactSurface& exact, const Vec3& own_P, const Vec3& edge_P, double along,
+             double limit) const {
     const Vec3 x_Q = X_QP_ * (own_P + along * edge_P);
-    const voxel::ClosestPoint nearest = exact.query(x_Q, limit);
+    const voxel::ClosestPoint nearest = exact.nearest(x_Q, limit);
     if (!std::isfinite(nearest.distance)) return {};
     const Vec3 away = x_Q - nearest.point;
     const double length = away.norm();
     const Vec3 up = length > 1e-9 * limit
                         ? Vec3(away * (std::copysign(1.0, nearest.distance) / length))
                         : nearest.pseudonormal;
-    return {along, nearest.distance, up.dot(R_QP_ * edge_P)};
+    const Vec3& face = exact.surface.face_normal(nearest.triangle);
+    const bool is_above_face = up.dot(face) > 1.0 - 1e-6;
+    return {along, nearest.distance, up.dot(R_QP_ * edge_P),
+            is_above_face ? face : Vec3(Vec3::Zero())};
   }
 
   bool samples_of_b_;
@@ -303,19 +342,24 @@ std::span<const model::ContactMemory::Entry> remembered(
   return {begin, std::ranges::upper_bound(begin, memory.end(), bodies, {}, key)};
 }
 
-// Gaps of the kept contacts of two shapes, measured to triangles: where a field rounds, or in a
-// step for all of them, so that no gap jumps when the field's smoothness does.
+// Gaps of the kept contacts of two shapes that may carry soon, measured to triangles: where a field
+// rounds, or in a step for all of them, so that no gap jumps when the field's smoothness does.
 void refine_kept(const BodyState& bodies, const BodyPair& pair, Shapes shapes, ExactSurfaces exact,
-                 bool in_step, SurfaceScratch& scratch) {
+                 double reach, bool in_step, SurfaceScratch& scratch) {
+  double deepest = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t k : scratch.reduction.kept) {
+    deepest = std::min(deepest, scratch.candidates[k].gap);
+  }
   const FieldContacts of_a(bodies, pair, shapes, false);
   const FieldContacts of_b(bodies, pair, shapes, true);
-  const voxel::SignedDistance* exact_a = exact[bodies.shape[pair.body_a]].get();
-  const voxel::SignedDistance* exact_b = exact[bodies.shape[pair.body_b]].get();
+  const ExactSurface* exact_a = exact[bodies.shape[pair.body_a]].get();
+  const ExactSurface* exact_b = exact[bodies.shape[pair.body_b]].get();
   for (const std::uint32_t k : scratch.reduction.kept) {
     ContactCandidate& c = scratch.candidates[k];
+    if (c.gap > std::max(deepest, 0.0) + reach) continue;
     const bool is_of_b = (c.feature >> 32U) != 0;
     const FieldContacts& field = is_of_b ? of_b : of_a;
-    const voxel::SignedDistance* surface = is_of_b ? exact_a : exact_b;
+    const ExactSurface* surface = is_of_b ? exact_a : exact_b;
     if (surface == nullptr) continue;
     if (in_step) {
       field.refine_in_place(*surface, c);
@@ -363,13 +407,15 @@ Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, co
 
 void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
                              ExactSurfaces exact, double margin, const SearchOptions& options,
-                             SurfaceScratch& scratch, model::ContactSet& out) {
+                             SurfaceScratch& scratch, model::ContactSet& out, NearPair* near) {
   const PairMotion motion(bodies, pair, options.dt);
   const double reach = motion.reach(margin);
   scratch.candidates.clear();
   if (bodies.geometry[pair.body_b] == model::Geometry::shape) {
-    FieldContacts(bodies, pair, shapes, false).append(reach, motion, scratch);
-    FieldContacts(bodies, pair, shapes, true).append(reach, motion, scratch);
+    for (const bool samples_of_b : {false, true}) {
+      NearSamples* one_way = near == nullptr ? nullptr : &(*near)[samples_of_b ? 1 : 0];
+      FieldContacts(bodies, pair, shapes, samples_of_b).append(reach, motion, one_way, scratch);
+    }
   } else {
     const FaceContacts faces(bodies, pair, shapes);
     if (bodies.geometry[pair.body_b] == model::Geometry::plane) {
@@ -391,7 +437,8 @@ void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shap
                     scratch.reduction);
     scratch.reduction_error = std::max(scratch.reduction_error, scratch.reduction.error);
     if (!exact.empty() && bodies.geometry[pair.body_b] == model::Geometry::shape) {
-      refine_kept(bodies, pair, shapes, exact, options.dt > 0.0, scratch);
+      refine_kept(bodies, pair, shapes, exact, kRestReach * motion.size(), options.dt > 0.0,
+                  scratch);
     }
     for (const std::uint32_t k : scratch.reduction.kept) {
       emit(bodies, pair, scratch.candidates[k], R_WA, R_WB, out);

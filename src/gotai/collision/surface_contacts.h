@@ -3,18 +3,20 @@
 /// other, or above planes and the faces of containers.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 
 #include "gotai/collision/broad_phase.h"
+#include "gotai/collision/exact_surface.h"
+#include "gotai/collision/near_samples.h"
 #include "gotai/collision/reduction.h"
 #include "gotai/collision/search_options.h"
 #include "gotai/collision/surface_search.h"
 #include "gotai/model/body_state.h"
 #include "gotai/model/contact_set.h"
 #include "gotai/voxel/shape.h"
-#include "gotai/voxel/signed_distance.h"
 
 namespace gotai::collision {
 
@@ -30,6 +32,10 @@ constexpr model::FeatureKey surface_feature(std::uint32_t direction, std::uint32
 /// @return the same, within the cone; zero when the sample faces away from the other body
 Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, const Vec3& toward);
 
+/// What the last search of a pair leaves for the next: the samples of body a in the field of body
+/// b, and the other way round.
+using NearPair = std::array<NearSamples, 2>;
+
 /// Storage of the search for one pair after another.
 struct SurfaceScratch {
   SurfaceSearch search;
@@ -40,7 +46,7 @@ struct SurfaceScratch {
 
 /// Exact distances to the surfaces of shapes, by BodyState::shape. Null where the shape's surface
 /// is not closed or overlaps itself: its field is all there is.
-using ExactSurfaces = std::span<const std::unique_ptr<const voxel::SignedDistance>>;
+using ExactSurfaces = std::span<const std::unique_ptr<const ExactSurface>>;
 
 /// Appends the contacts of one pair with a gap up to the margin; body_a has a shape, body_b a
 /// shape, a plane or a container. Contacts that cannot close within options.dt are left out. With
@@ -50,9 +56,12 @@ using ExactSurfaces = std::span<const std::unique_ptr<const voxel::SignedDistanc
 /// @param shapes  indexed by BodyState::shape, with surface models
 /// @param exact   likewise; empty: gaps are the fields'
 /// @param margin  [m], >= 0
+/// @param near    of the pair's last search with these shapes, or empty: changes no bit of the
+///                result. Null: nothing is kept
 void append_surface_contacts(const model::BodyState& bodies, const BodyPair& pair,
                              std::span<const std::shared_ptr<const voxel::Shape>> shapes,
                              ExactSurfaces exact, double margin, const SearchOptions& options,
-                             SurfaceScratch& scratch, model::ContactSet& out);
+                             SurfaceScratch& scratch, model::ContactSet& out,
+                             NearPair* near = nullptr);
 
 }  // namespace gotai::collision

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "gotai/collision/exact_surface.h"
 #include "gotai/collision/lanes.h"
 #include "gotai/collision/surface_search_bounds.h"
 
@@ -21,6 +22,10 @@
 // phi(x). A sample that uses the coarse lattice and is a hit lies inside, at phi(x) <=
 // -nearest_coarse, unless margin >= nearest_coarse; then phi(m) <= r - nearest_coarse keeps the
 // sphere anyway. So s_x = c is enough for margins below nearest_coarse.
+//
+// Bricks clamp distances to +-R at their nodes, so far from the surface I(m) is too near to 0.
+// Where it is positive no node around m is below -R, and it is at most the unclamped one: the bound
+// holds. Where it is not, the sphere is kept.
 //
 // Beyond the lattice's cube, with x' the nearest point of the cube, f(x) = f(x') + |x - x'|. Then
 // f(x) >= f(x'), and |x' - m'| <= |x - m|, so the bound holds with I(m'). The cube's faces are four
@@ -55,6 +60,7 @@ GOTAI_INLINE void gather_pairs(const std::int16_t* values, I8 index, F8& first, 
 }  // namespace gotai::collision::portable
 
 #include "gotai/collision/surface_search_kernel.inc"
+#include "gotai/collision/triangle_search_kernel.inc"
 
 namespace gotai::collision {
 namespace {
@@ -94,6 +100,18 @@ void search_field(const voxel::SurfaceTree& samples, const voxel::DistanceField&
   portable::search_field(samples, field, pose, margin, search);
 }
 
+void search_packets(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                    const SamplePose& pose, float margin, const std::vector<std::uint32_t>& packets,
+                    SurfaceSearch& search, Kernel kernel) {
+#ifdef __x86_64__
+  if (use_avx2(kernel)) {
+    search_packets_avx2(samples, field, pose, margin, packets, search);
+    return;
+  }
+#endif
+  portable::search_packets(samples, field, pose, margin, packets, search);
+}
+
 void search_half_space(const voxel::SurfaceTree& samples, const std::array<float, 3>& normal,
                        float offset, float margin, SurfaceSearch& search, Kernel kernel) {
 #ifdef __x86_64__
@@ -103,6 +121,14 @@ void search_half_space(const voxel::SurfaceTree& samples, const std::array<float
   }
 #endif
   portable::search_half_space(samples, normal, offset, margin, search);
+}
+
+std::uint32_t nearest_triangle(const voxel::TriangleTree& tree, const std::array<float, 3>& point,
+                               float limit, Kernel kernel) {
+#ifdef __x86_64__
+  if (use_avx2(kernel)) return nearest_triangle_avx2(tree, point, limit);
+#endif
+  return portable::nearest_triangle(tree, point, limit);
 }
 
 }  // namespace gotai::collision

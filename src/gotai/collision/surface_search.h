@@ -48,6 +48,12 @@ void search_field(const voxel::SurfaceTree& samples, const voxel::DistanceField&
                   const SamplePose& pose, float margin, SurfaceSearch& search,
                   Kernel kernel = Kernel::automatic);
 
+/// The same among the samples of some packets of points.
+/// @param packets  ascending
+void search_packets(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                    const SamplePose& pose, float margin, const std::vector<std::uint32_t>& packets,
+                    SurfaceSearch& search, Kernel kernel = Kernel::automatic);
+
 /// Finds the samples whose height above a plane, normal . x + offset, is at most `margin`.
 /// @param normal  unit, in the samples' frame S; also the gradient of the hits
 /// @param offset  [m]

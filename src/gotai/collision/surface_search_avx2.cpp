@@ -46,6 +46,7 @@ GOTAI_INLINE void gather_pairs(const std::int16_t* values, I8 index, F8& first, 
 }  // namespace gotai::collision::avx2
 
 #include "gotai/collision/surface_search_kernel.inc"
+#include "gotai/collision/triangle_search_kernel.inc"
 
 namespace gotai::collision {
 
@@ -54,9 +55,20 @@ void search_field_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceF
   avx2::search_field(samples, field, pose, margin, search);
 }
 
+void search_packets_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                         const SamplePose& pose, float margin,
+                         const std::vector<std::uint32_t>& packets, SurfaceSearch& search) {
+  avx2::search_packets(samples, field, pose, margin, packets, search);
+}
+
 void search_half_space_avx2(const voxel::SurfaceTree& samples, const std::array<float, 3>& normal,
                             float offset, float margin, SurfaceSearch& search) {
   avx2::search_half_space(samples, normal, offset, margin, search);
+}
+
+std::uint32_t nearest_triangle_avx2(const voxel::TriangleTree& tree,
+                                    const std::array<float, 3>& point, float limit) {
+  return avx2::nearest_triangle(tree, point, limit);
 }
 
 }  // namespace gotai::collision

@@ -7,6 +7,7 @@
 
 #include "gotai/collision/surface_search.h"
 #include "gotai/voxel/distance_field.h"
+#include "gotai/voxel/triangle_tree.h"
 
 namespace gotai::collision {
 
@@ -25,7 +26,13 @@ inline std::array<float, 2> squared_slack(const voxel::DistanceField& field, flo
 // The AVX2 builds of search_field and search_half_space. Only for processors that have it.
 void search_field_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
                        const SamplePose& pose, float margin, SurfaceSearch& search);
+void search_packets_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                         const SamplePose& pose, float margin,
+                         const std::vector<std::uint32_t>& packets, SurfaceSearch& search);
 void search_half_space_avx2(const voxel::SurfaceTree& samples, const std::array<float, 3>& normal,
                             float offset, float margin, SurfaceSearch& search);
+// Likewise of nearest_triangle.
+std::uint32_t nearest_triangle_avx2(const voxel::TriangleTree& tree,
+                                    const std::array<float, 3>& point, float limit);
 
 }  // namespace gotai::collision

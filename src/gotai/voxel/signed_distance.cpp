@@ -250,9 +250,24 @@ ClosestPoint SignedDistance::query(const Vec3& x, double limit, std::uint32_t hi
   }
   if (feature < 0) return result;
   result.pseudonormal = pseudonormal(result.triangle, feature);
-  const bool inside = inside_ != nullptr ? inside_->winding_number(x) > 0.5
-                                         : (x - result.point).dot(result.pseudonormal) < 0.0;
-  result.distance = inside ? -std::sqrt(best) : std::sqrt(best);
+  result.distance = is_inside(x, result) ? -std::sqrt(best) : std::sqrt(best);
+  return result;
+}
+
+bool SignedDistance::is_inside(const Vec3& x, const ClosestPoint& nearest) const {
+  return inside_ != nullptr ? inside_->winding_number(x) > 0.5
+                            : (x - nearest.point).dot(nearest.pseudonormal) < 0.0;
+}
+
+ClosestPoint SignedDistance::query_triangle(const Vec3& x, std::uint32_t triangle) const {
+  const auto [a, b, c] = triangles_[triangle];
+  const TrianglePoint nearest = closest_on_triangle(x, vertices_[a], vertices_[b], vertices_[c]);
+  ClosestPoint result;
+  result.point = nearest.point;
+  result.triangle = triangle;
+  result.pseudonormal = pseudonormal(triangle, nearest.feature);
+  result.distance = (x - nearest.point).norm();
+  if (is_inside(x, result)) result.distance = -result.distance;
   return result;
 }
 

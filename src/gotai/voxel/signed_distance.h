@@ -40,6 +40,10 @@ class SignedDistance {
   ClosestPoint query(const Vec3& x, double limit = std::numeric_limits<double>::infinity(),
                      std::uint32_t hint = kNoTriangle) const;
 
+  /// The point of one triangle that is nearest to x, with the sign that holds when no other
+  /// triangle is nearer.
+  ClosestPoint query_triangle(const Vec3& x, std::uint32_t triangle) const;
+
   /// Unit outward normal of a triangle; zero for one without area.
   const Vec3& face_normal(std::uint32_t triangle) const { return face_normal_[triangle]; }
   /// The triangle across edge e (from corner e to corner e + 1), or kNoTriangle at a boundary or
@@ -68,6 +72,7 @@ class SignedDistance {
   void build();
   std::uint32_t build_node(std::vector<Vec3>& centers, std::uint32_t begin, std::uint32_t end);
   Vec3 pseudonormal(std::uint32_t triangle, int feature) const;
+  bool is_inside(const Vec3& x, const ClosestPoint& nearest) const;
 
   const WindingTree* inside_;
   std::vector<Vec3> vertices_;

@@ -22,8 +22,12 @@ bool has_right_sizes(const SurfaceTree& tree) {
   const std::size_t n = tree.size();
   if (n == 0 || tree.vector_area.size() != n || tree.cone_cosine.size() != n ||
       tree.kind.size() != n || tree.edge.size() != n ||
-      tree.edge_reach.size() != tree.edge_direction.size() ||
+      tree.edge_reach.size() != tree.edge_direction.size() || tree.first_vertex.size() != n + 1 ||
       tree.points.size() != (n + kLanes - 1) / kLanes || tree.heights.empty()) {
+    return false;
+  }
+  if (!std::is_sorted(tree.first_vertex.begin(), tree.first_vertex.end()) ||
+      tree.first_vertex.front() != 0 || tree.first_vertex.back() != tree.vertex.size()) {
     return false;
   }
   std::size_t children = tree.points.size();
@@ -55,7 +59,7 @@ bool is_possible(const SurfaceTree& tree) {
   }
   return std::all_of(tree.points.begin(), tree.points.end(), finite) && all_finite(tree.normal) &&
          all_finite(tree.cone_cosine) && all_finite(tree.vector_area) &&
-         all_finite(tree.edge_direction) && all_finite(tree.edge_reach);
+         all_finite(tree.edge_direction) && all_finite(tree.edge_reach) && all_finite(tree.vertex);
 }
 
 bool is_possible(const DistanceField& field) {
@@ -89,6 +93,8 @@ void encode_tree(ByteWriter& out, const SurfaceTree& tree) {
   out.array(tree.edge_direction);
   out.array(tree.edge_reach);
   out.array(tree.edge);
+  out.array(tree.vertex);
+  out.array(tree.first_vertex);
 }
 
 SurfaceTree decode_tree(ByteReader& in) {
@@ -104,6 +110,8 @@ SurfaceTree decode_tree(ByteReader& in) {
   tree.edge_direction = in.array<std::array<float, 3>>();
   tree.edge_reach = in.array<std::array<float, 2>>();
   tree.edge = in.array<std::int32_t>();
+  tree.vertex = in.array<std::array<float, 3>>();
+  tree.first_vertex = in.array<std::uint32_t>();
   if (!has_right_sizes(tree) || !is_possible(tree)) in.fail("is damaged: impossible sample tree");
   return tree;
 }

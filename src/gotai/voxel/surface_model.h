@@ -43,6 +43,9 @@ struct SurfaceTree {
       edge_direction;                            ///< unit; of samples [0, edge_count)... see edge
   std::vector<std::array<float, 2>> edge_reach;  ///< back, forward [m]; likewise
   std::vector<std::int32_t> edge;                ///< index into edge_*; -1 for other kinds
+  /// Vertices of the mesh near sample i: [first_vertex[i], first_vertex[i + 1]). Frame S [m].
+  std::vector<std::array<float, 3>> vertex;
+  std::vector<std::uint32_t> first_vertex;
 
   std::size_t size() const { return normal.size(); }
   std::size_t bytes() const;

@@ -117,6 +117,7 @@ class Sampler {
     }
     assign();
     finish();
+    collect_vertices();
     return std::move(samples_);
   }
 
@@ -283,24 +284,49 @@ class Sampler {
     }
   }
 
-  // Gives every dense point to the nearest sample of its side.
-  void assign() {
-    owner_.assign(dense_.size(), 0);
+  SampleGrid grid_of_samples() const {
     SampleGrid grid(spacing_, samples_.size());
     for (std::uint32_t i = 0; i < samples_.size(); ++i) grid.insert(samples_[i].position, i);
+    return grid;
+  }
+
+  // The nearest sample, of the side that faces along the normal if there is one.
+  std::uint32_t nearest_sample(const SampleGrid& grid, const Vec3& x, const Vec3& normal) const {
+    std::uint32_t nearest = 0;
+    double best = std::numeric_limits<double>::infinity();
+    grid.visit(x, [&](std::uint32_t i) {
+      const SurfaceSample& s = samples_[i];
+      const bool same_side = s.normal.dot(normal) > std::min(kSameSide, s.cone_cosine - 1e-9);
+      const double squared =
+          (s.position - x).squaredNorm() + (same_side ? 0.0 : 1e3 * spacing_ * spacing_);
+      if (squared < best || (squared == best && i < nearest)) {
+        best = squared;
+        nearest = i;
+      }
+    });
+    return nearest;
+  }
+
+  // Gives every dense point to the nearest sample of its side.
+  void assign() {
+    owner_.resize(dense_.size());
+    const SampleGrid grid = grid_of_samples();
     for (std::size_t d = 0; d < dense_.size(); ++d) {
-      double best = std::numeric_limits<double>::infinity();
-      grid.visit(dense_[d].position, [&](std::uint32_t i) {
-        const SurfaceSample& s = samples_[i];
-        const bool same_side =
-            s.normal.dot(dense_[d].normal) > std::min(kSameSide, s.cone_cosine - 1e-9);
-        const double squared = (s.position - dense_[d].position).squaredNorm() +
-                               (same_side ? 0.0 : 1e3 * spacing_ * spacing_);
-        if (squared < best || (squared == best && i < owner_[d])) {
-          best = squared;
-          owner_[d] = i;
-        }
-      });
+      owner_[d] = nearest_sample(grid, dense_[d].position, dense_[d].normal);
+    }
+  }
+
+  void collect_vertices() {
+    constexpr double kFlat = 1e-3;  // [rad]
+    const SampleGrid grid = grid_of_samples();
+    for (std::uint32_t v = 0; v < fans_.size(); ++v) {
+      if (!(fans_[v].largest_angle > kFlat)) continue;
+      const Vec3& x = surface_.vertex(v);
+      SurfaceSample& s =
+          samples_[nearest_sample(grid, x, vertex_sample(v, SampleKind::face).normal)];
+      if (s.kind == SampleKind::face && (s.position - x).norm() > 1e-6 * spacing_) {
+        s.vertices.push_back(x);
+      }
     }
   }
 

@@ -30,6 +30,9 @@ struct SurfaceSample {
   /// edge or its share of it [m].
   double reach_back = 0.0;
   double reach_forward = 0.0;
+  /// Convex vertices of the mesh that are nearest to this sample, itself excepted [m]: where a fine
+  /// mesh touches between its samples.
+  std::vector<Vec3> vertices;
 };
 
 /// Convex edges whose faces' normals differ by more than this are sharp [rad].

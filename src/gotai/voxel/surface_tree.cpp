@@ -3,15 +3,14 @@
 #include <numeric>
 #include <span>
 
+#include "gotai/voxel/run_order.h"
 #include "gotai/voxel/surface_model.h"
 
 namespace gotai::voxel {
 namespace {
 
-// Orders [begin, end) so that every aligned run of 8^k samples is compact: halves along the longest
-// axis, cut at multiples of the largest power of 8 that fits.
-void order_samples(const std::vector<SurfaceSample>& samples, std::uint32_t* begin,
-                   std::uint32_t* end) {
+// Orders [begin, end) of indices into points.
+void order_range(const std::vector<Vec3>& points, std::uint32_t* begin, std::uint32_t* end) {
   const std::ptrdiff_t count = end - begin;
   if (count <= kLanes) {
     std::sort(begin, end);
@@ -22,16 +21,16 @@ void order_samples(const std::vector<SurfaceSample>& samples, std::uint32_t* beg
   const std::ptrdiff_t units = (count + unit - 1) / unit;
   const std::ptrdiff_t middle = (units / 2) * unit;
   Box3 box;
-  for (const std::uint32_t* i = begin; i != end; ++i) box.extend(samples[*i].position);
+  for (const std::uint32_t* i = begin; i != end; ++i) box.extend(points[*i]);
   Eigen::Index axis = 0;
   box.sizes().maxCoeff(&axis);
   std::nth_element(begin, begin + middle, end, [&](std::uint32_t i, std::uint32_t j) {
-    const double x = samples[i].position[axis];
-    const double y = samples[j].position[axis];
+    const double x = points[i][axis];
+    const double y = points[j][axis];
     return x < y || (x == y && i < j);
   });
-  order_samples(samples, begin, begin + middle);
-  order_samples(samples, begin + middle, end);
+  order_range(points, begin, begin + middle);
+  order_range(points, begin + middle, end);
 }
 
 struct Sphere {
@@ -89,20 +88,28 @@ std::vector<SpherePacket> bound_runs(const std::vector<Vec3>& points, std::size_
 
 }  // namespace
 
+std::vector<std::uint32_t> order_in_runs(const std::vector<Vec3>& points) {
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0U);
+  order_range(points, order.data(), order.data() + order.size());
+  return order;
+}
+
 std::size_t SurfaceTree::bytes() const {
   std::size_t total = points.size() * sizeof(PointPacket);
   for (const auto& packets : heights) total += packets.size() * sizeof(SpherePacket);
   total += normal.size() * sizeof(normal[0]) + cone_cosine.size() * sizeof(float) +
            vector_area.size() * sizeof(vector_area[0]) + kind.size() +
            edge.size() * sizeof(edge[0]) + edge_direction.size() * sizeof(edge_direction[0]) +
-           edge_reach.size() * sizeof(edge_reach[0]);
+           edge_reach.size() * sizeof(edge_reach[0]) + vertex.size() * sizeof(vertex[0]) +
+           first_vertex.size() * sizeof(first_vertex[0]);
   return total;
 }
 
 SurfaceTree make_surface_tree(const std::vector<SurfaceSample>& samples, const Vec3& center) {
-  std::vector<std::uint32_t> order(samples.size());
-  std::iota(order.begin(), order.end(), 0U);
-  order_samples(samples, order.data(), order.data() + order.size());
+  std::vector<Vec3> positions;
+  for (const SurfaceSample& s : samples) positions.push_back(s.position);
+  const std::vector<std::uint32_t> order = order_in_runs(positions);
 
   SurfaceTree tree;
   // Bounds are taken over the rounded points, which are what a search transforms.
@@ -129,7 +136,10 @@ SurfaceTree make_surface_tree(const std::vector<SurfaceSample>& samples, const V
       tree.edge_reach.push_back(
           {static_cast<float>(s.reach_back), static_cast<float>(s.reach_forward)});
     }
+    tree.first_vertex.push_back(static_cast<std::uint32_t>(tree.vertex.size()));
+    for (const Vec3& x : s.vertices) tree.vertex.push_back(to_floats(x - center));
   }
+  tree.first_vertex.push_back(static_cast<std::uint32_t>(tree.vertex.size()));
   std::size_t run = kLanes;
   do {
     tree.heights.push_back(bound_runs(points, run));

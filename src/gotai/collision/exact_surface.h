@@ -1,0 +1,36 @@
+/// @file
+/// The triangles of a shape as the measure of its contacts: exact where a distance field rounds.
+#pragma once
+
+#include <cstdint>
+
+#include "gotai/collision/surface_search.h"
+#include "gotai/core/types.h"
+#include "gotai/voxel/shape.h"
+#include "gotai/voxel/signed_distance.h"
+#include "gotai/voxel/triangle_tree.h"
+
+namespace gotai::collision {
+
+/// Index of the triangle nearest to a point, but for single-precision rounding of the distances;
+/// kNoTriangle where none is nearer than the limit.
+/// @param point  [m], frame S of the tree
+/// @param limit  [m]
+std::uint32_t nearest_triangle(const voxel::TriangleTree& tree, const std::array<float, 3>& point,
+                               float limit, Kernel kernel = Kernel::automatic);
+
+/// Signed distances to the surface of a shape, which must be closed and must not overlap itself.
+struct ExactSurface {
+  /// @param shape  with a surface model
+  explicit ExactSurface(const voxel::Shape& shape);
+
+  /// The nearest point of the surface; its distance is infinite beyond the limit.
+  /// @param x      [m], mesh frame
+  /// @param limit  [m]
+  voxel::ClosestPoint nearest(const Vec3& x, double limit) const;
+
+  voxel::SignedDistance surface;
+  voxel::TriangleTree tree;
+};
+
+}  // namespace gotai::collision

@@ -1,0 +1,60 @@
+// The nearest triangle, found eight at a time, against the search in double precision.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gotai/collision/exact_surface.h"
+#include "gotai/core/random.h"
+#include "gotai/geometry/generate.h"
+
+namespace gotai::collision {
+namespace {
+
+class Exact : public testing::TestWithParam<std::string> {
+ protected:
+  static voxel::Shape make() {
+    geometry::GeneratorOptions options;
+    options.shape = GetParam();
+    voxel::ShapeOptions how;
+    how.prepared_level = 4;
+    how.surface_level = 4;
+    return voxel::make_shape(GetParam(), geometry::generate(options), how);
+  }
+};
+
+TEST_P(Exact, NearestPointIsThatOfTheSearchInDoublePrecision) {
+  const ExactSurface exact(make());
+  Random random(31);
+  std::size_t beyond = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3 x = random.uniform(0.0, 0.9) * random.unit_vector();
+    const double limit = random.uniform(0.02, 0.5);
+    const voxel::ClosestPoint slow = exact.surface.query(x);
+    const voxel::ClosestPoint fast = exact.nearest(x, limit);
+    if (std::abs(slow.distance) > limit + 1e-5) {
+      EXPECT_TRUE(std::isinf(fast.distance));
+      ++beyond;
+    } else if (std::abs(slow.distance) < limit - 1e-5) {
+      ASSERT_NEAR(fast.distance, slow.distance, 1e-6);
+    }
+  }
+  EXPECT_GT(beyond, 100U);
+  EXPECT_LT(beyond, 1900U);
+}
+
+TEST_P(Exact, NearestTriangleIsTheSameOnEveryKernel) {
+  if (!is_available(Kernel::avx2)) GTEST_SKIP() << "this processor has no AVX2";
+  const ExactSurface exact(make());
+  Random random(32);
+  for (int k = 0; k < 2000; ++k) {
+    const Eigen::Vector3f x = (random.uniform(0.0, 0.9) * random.unit_vector()).cast<float>();
+    const auto limit = static_cast<float>(random.uniform(0.0, 0.5));
+    const std::array<float, 3> p = {x.x(), x.y(), x.z()};
+    ASSERT_EQ(nearest_triangle(exact.tree, p, limit, Kernel::portable),
+              nearest_triangle(exact.tree, p, limit, Kernel::avx2));
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Shapes, Exact, testing::Values("hexapod", "rock", "torus", "cube"));
+
+}  // namespace
+}  // namespace gotai::collision
