@@ -16,7 +16,7 @@ using model::SolverName;
 std::shared_ptr<const voxel::Shape> surface_shape(const geometry::GeneratorOptions& options,
                                                   int level) {
   voxel::ShapeOptions how;
-  how.prepared_level = 3;
+  how.prepared_level = 5;
   how.surface_level = level;
   return std::make_shared<const voxel::Shape>(
       voxel::make_shape(options.shape, geometry::generate(options), how));
@@ -81,6 +81,73 @@ TEST(SurfaceSpin, ReducedContactsStopACubeAsAllDo) {
           << level << " " << to_string(solver);
     }
   }
+}
+
+std::shared_ptr<const voxel::Shape> surface_box(const Vec3& extents, int level) {
+  geometry::GeneratorOptions options;
+  options.shape = "box";
+  options.extents = extents;
+  return surface_shape(options, level);
+}
+
+Quat about(const Vec3& axis, double angle) { return Quat(Eigen::AngleAxisd(angle, axis)); }
+
+BodyId add(World& world, const std::shared_ptr<const voxel::Shape>& shape, const Vec3& x,
+           const Quat& q, model::BodyKind kind, const Vec3& v = Vec3::Zero(),
+           const Vec3& w = Vec3::Zero()) {
+  BodyDescription body;
+  body.shape = world.add_shape(shape);
+  body.kind = kind;
+  body.com_position = x;
+  body.X_WM.q = q;
+  body.velocity = v;
+  body.angular_velocity = w;
+  return world.add_body(body);
+}
+
+// Half a metre of one cube's top under another, which has no friction to slow it.
+TEST(SurfaceSlide, ACubeOnACubeKeepsItsSpeedAtAnyYaw) {
+  const auto below = surface_box(Vec3(2, 2, 1), 5);
+  const auto above = surface_box(Vec3(0.5, 0.5, 0.5), 5);
+  double worst = 0.0;
+  for (const double yaw : {0.0, 0.2, 0.5, M_PI / 4, 1.1}) {
+    for (const double yaw_below : {0.0, 0.35}) {
+      World world =
+          surface_world(0.0, 1.0 / 100.0, SolverName::substepped, ContactTreatment::reduced);
+      add(world, below, Vec3(0, 0, -0.5), about(Vec3::UnitZ(), yaw_below), model::BodyKind::fixed);
+      const BodyId cube = add(world, above, Vec3(-0.3, 0, 0.25), about(Vec3::UnitZ(), yaw),
+                              model::BodyKind::dynamic, Vec3(1, 0, 0));
+      world.run_until(0.6);
+      const Vec3 v = world.bodies().v_W[world.index(cube)];
+      worst = std::max(worst, (v - Vec3(1, 0, 0)).norm());
+      EXPECT_NEAR(world.bodies().x_W[world.index(cube)].x(), 0.3, 1e-3);
+      EXPECT_NEAR(v.x(), 1.0, 1e-3) << yaw << " on " << yaw_below;
+    }
+  }
+  std::printf("cube on cube: speed changes by at most %.5f %%\n", 100.0 * worst);
+}
+
+TEST(SurfaceSlide, ABlockOnARotatedInclineFallsAsFastAsItShould) {
+  const double angle = 20.0 * M_PI / 180.0;
+  const auto ramp = surface_box(Vec3(12, 12, 1), 5);
+  const auto block = surface_box(Vec3(1, 1, 1), 5);
+  const double exact = 9.8 * std::sin(angle);
+  double worst = 0.0;
+  for (int k = 0; k < 10; ++k) {
+    World world =
+        surface_world(0.0, 1.0 / 100.0, SolverName::substepped, ContactTreatment::reduced);
+    const Quat tilt = about(Vec3::UnitY(), angle);
+    const Quat yaw = about(Vec3::UnitZ(), 0.17 * k);
+    add(world, ramp, tilt * Vec3(0, 0, -0.5), tilt * yaw, model::BodyKind::fixed);
+    const BodyId body = add(world, block, tilt * Vec3(-3, 0, 0.5),
+                            tilt * about(Vec3::UnitZ(), 0.31 * k), model::BodyKind::dynamic);
+    world.run_until(1.0);
+    const Vec3 v = tilt.conjugate() * world.bodies().v_W[world.index(body)];
+    worst = std::max(worst, std::abs(v.x() / exact - 1.0));
+    EXPECT_NEAR(v.x(), exact, 1e-3 * exact) << k;
+    EXPECT_NEAR(v.y(), 0.0, 1e-3 * exact) << k;
+  }
+  std::printf("incline: acceleration off by at most %.5f %%\n", 100.0 * worst);
 }
 
 }  // namespace
