@@ -7,10 +7,12 @@
 #include <atomic>
 #include <chrono>
 #include <cstring>
+#include <ctime>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "gotai/core/error.h"
+#include "gotai/core/parallel.h"
 #include "gotai/geometry/generate.h"
 #include "gotai/view/live_frames.h"
 #include "gotai/view/page.h"
@@ -157,6 +159,61 @@ TEST_F(Live, SmallStepsAreFewPointsOfTheCurves) {
   server->finish(10.0);
   viewer.join();
   EXPECT_LT(received.size(), 20'000U);
+}
+
+/// Processor time of this thread [s]: what other programs do does not count.
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+TEST_F(Live, SlowsTheRunByLessThanATwentieth) {
+  // 20 hexapods on the ground, touching, as chapter 5 runs them.
+  const ThreadLimit one(1);
+  model::Settings settings;
+  settings.collision.level = 4;
+  settings.collision.model = model::CollisionModel::spheres;
+  settings.impulse.contacts = model::ContactTreatment::apparent;
+  settings.time.step = 0.01;
+  World pile(settings);
+  pile.add_shape(std::make_shared<const voxel::Shape>(voxel::make_shape(
+      "block", geometry::generate({.shape = "hexapod", .size = 1.0}), {.prepared_level = 4})));
+  pile.add_plane({});
+  for (int i = 0; i < 20; ++i) {
+    BodyDescription body;
+    body.X_WM.p = Vec3(0.9 * (i % 4), 0.9 * (i / 4 % 2), 0.6 + 0.9 * (i / 8));
+    pile.add_body(body);
+  }
+  LiveServer live(pile, "pile", "test", {.free_seconds = 0.0});
+  std::size_t received = 0;
+  std::thread viewer([&] {
+    httplib::Client http("127.0.0.1", live.port());
+    http.Get("/events", [&](const char*, std::size_t size) {
+      received += size;
+      return true;
+    });
+  });
+  live.wait_for_viewer(10.0, [] { return false; });
+  double stepping = 0.0;
+  double showing = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    const double begin = thread_seconds();
+    live.wait_while_paused([] { return false; });
+    const double free = thread_seconds();
+    const model::StepReport report = pile.step();
+    const double stepped = thread_seconds();
+    live.on_step(pile, report);
+    const double shown = thread_seconds();
+    const double asking = 2.0 * (thread_seconds() - shown);  // what the clock itself takes
+    showing += shown - stepped + free - begin - asking;
+    stepping += stepped - free;
+  }
+  live.finish(10.0);
+  viewer.join();
+  EXPECT_GT(received, 50'000U);
+  RecordProperty("percent", std::to_string(100.0 * showing / stepping));
+  EXPECT_LT(showing, 0.05 * stepping);
 }
 
 TEST_F(Live, PausesStepsAndResumes) {

@@ -45,7 +45,7 @@ export class App {
     const view = h("div", { class: "view" });
     document.body.replaceChildren(view);
     this.stage = new Stage(view);
-    this.world = new World(run);
+    this.world = new World(run, this.stage.simple);
     this.stage.scene.add(this.world.object);
     this.stage.setExtent(this.world.extent);
     this.stage.onMove(() => (this.dirty = true));
@@ -140,6 +140,8 @@ export class App {
     const before = this.player.time;
     this.player.advance(seconds);
     if (this.stage.resize()) {
+      if (this.options.panel && this.options.charts) this.makeRoom("panel");
+      this.panel.element.hidden = !this.options.panel;
       this.charts.build();
       this.layOut();
       this.dirty = true;
@@ -195,7 +197,14 @@ export class App {
 
   private toggle(name: Toggle): void {
     this.options[name] = !this.options[name];
+    if (name === "panel" && this.options.panel) this.makeRoom("charts");
+    if (name === "charts" && this.options.charts) this.makeRoom("panel");
     this.apply();
+  }
+
+  /** A small page has room for one of them. */
+  private makeRoom(other: "panel" | "charts"): void {
+    if (window.innerWidth <= kNarrow) this.options[other] = false;
   }
 
   private colour(mode: ColourMode): void {

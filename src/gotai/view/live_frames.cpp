@@ -12,6 +12,7 @@ namespace {
 
 // Half a minute of frames: who opens the page late still sees how it began.
 constexpr std::size_t kKeptFrames = 1800;
+constexpr std::chrono::milliseconds kPause{8};  // half a frame of 60 per second
 constexpr std::size_t kKeptBytes = std::size_t{256} << 20U;
 // More arrows than anybody can tell apart.
 constexpr std::size_t kMostContacts = 3000;
@@ -95,7 +96,6 @@ void LiveFrames::push(LiveFrame frame) {
       ++first_;
     }
   }
-  arrived_.notify_all();
 }
 
 void LiveFrames::close() {
@@ -103,13 +103,17 @@ void LiveFrames::close() {
     const std::scoped_lock lock(mutex_);
     closed_ = true;
   }
-  arrived_.notify_all();
+  closing_.notify_all();
 }
 
 std::optional<LiveFrames::Next> LiveFrames::next(std::uint64_t number,
                                                  std::chrono::milliseconds patience, bool& closed) {
   std::unique_lock lock(mutex_);
-  arrived_.wait_for(lock, patience, [&] { return closed_ || number < first_ + frames_.size(); });
+  const auto end = std::chrono::steady_clock::now() + patience;
+  const auto is_there = [&] { return closed_ || number < first_ + frames_.size(); };
+  // Asking again costs the viewer's thread little; waking it would cost the simulation much.
+  while (!is_there() && std::chrono::steady_clock::now() < end)
+    closing_.wait_for(lock, std::min(patience, kPause), is_there);
   closed = closed_;
   number = std::max(number, first_);
   if (number >= first_ + frames_.size()) return std::nullopt;

@@ -45,7 +45,7 @@ class LiveFrames {
 
  private:
   std::mutex mutex_;
-  std::condition_variable arrived_;
+  std::condition_variable closing_;
   std::deque<std::shared_ptr<const LiveFrame>> frames_;
   std::uint64_t first_ = 0;  // number of frames_[0]
   std::size_t bytes_ = 0;    // of frames_

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "gotai/core/error.h"
+#include "gotai/core/stopwatch.h"
 #include "gotai/view/live_frames.h"
 #include "gotai/view/page.h"
 #include "gotai/view/run_header.h"
@@ -22,6 +23,23 @@ using std::chrono::milliseconds;
 
 // A chart has no room for more points; runs may take thousands of steps for a frame.
 constexpr std::size_t kCurvePointsPerFrame = 4;
+
+/// Lets frames take a small part of the run's time.
+class Budget {
+ public:
+  explicit Budget(double seconds) : seconds_(seconds), most_(seconds + kReserve) {}
+
+  void earn(double step_seconds) { seconds_ = std::min(most_, seconds_ + kPart * step_seconds); }
+  bool is_enough() const { return seconds_ >= 0.0; }
+  /// A frame that was held up by another program does not keep later ones away for long.
+  void spend(double seconds) { seconds_ = std::max(-kReserve, seconds_ - seconds); }
+
+ private:
+  static constexpr double kPart = 0.025;
+  static constexpr double kReserve = 5e-4;  // [s]
+  double seconds_;
+  double most_;
+};
 
 /// May the simulation go on?
 class Gate {
@@ -90,6 +108,7 @@ struct LiveServer::State {
 
   double frame_time = 0.0;  // simulated time between frames [s]
   double next_frame = 0.0;
+  Budget budget{0.0};
   std::vector<model::StepReport> steps;  // since the last frame
 
   bool is_own(const httplib::Request& request) const;
@@ -178,6 +197,7 @@ LiveServer::LiveServer(const World& world, const std::string& title, const std::
   state.page = live_page();
   state.scene = scene_of(world, title, generator);
   state.frame_time = 1.0 / options.fps;
+  state.budget = Budget(options.free_seconds);
   state.next_frame = world.time() + state.frame_time;
   state.frames.push({capture(world), {}});
   state.route();
@@ -211,13 +231,17 @@ std::string LiveServer::address() const { return fmt::format("http://127.0.0.1:{
 void LiveServer::on_step(const World& world, const model::StepReport& report) {
   State& state = *state_;
   state.steps.push_back(report);
+  state.budget.earn(report.total_s());
   // Single steps are all shown.
-  if (world.time() < state.next_frame - 1e-9 && !state.gate.is_paused()) return;
+  const bool due = world.time() >= state.next_frame - 1e-9 && state.budget.is_enough();
+  if (!due && !state.gate.is_paused()) return;
+  const Stopwatch watch;
   if (world.time() >= state.next_frame - 1e-9) state.next_frame += state.frame_time;
   // Steps longer than a frame's time: the next frame is the next step.
   state.next_frame = std::max(state.next_frame, world.time());
   state.frames.push({capture(world), curve_points(state.steps, kCurvePointsPerFrame)});
   state.steps.clear();
+  state.budget.spend(watch.seconds());
 }
 
 bool LiveServer::wait_for_viewer(double seconds, const std::function<bool()>& stop) {

@@ -21,7 +21,9 @@ class LiveServer {
  public:
   struct Options {
     int port = 0;       ///< 0: any free one
-    double fps = 60.0;  ///< frames per second of simulated time
+    double fps = 60.0;  ///< frames per second of simulated time; fewer where they would cost more
+                        ///< than a fortieth of the run's time
+    double free_seconds = 0.05;  ///< that frames may cost in the whole run beyond that [s]
   };
 
   /// Starts serving the world as it is.

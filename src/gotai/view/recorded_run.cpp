@@ -23,6 +23,7 @@ std::string title_of(const RecordingReader& reader) {
 void add_facts(const RecordingReader& reader, RunView& run) {
   const json settings = json::parse(reader.settings_json(), nullptr, false);
   const auto text = [](const json& value) {
+    if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
     return value.is_string() ? value.get<std::string>() : value.dump();
   };
   if (settings.is_object()) {

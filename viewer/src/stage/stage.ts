@@ -27,6 +27,7 @@ function drawsInSoftware(): boolean {
 }
 
 export class Stage {
+  readonly simple = drawsInSoftware();
   readonly scene = new THREE.Scene();
   readonly camera = new THREE.PerspectiveCamera(38, 1, 0.01, 1000);
   readonly renderer: THREE.WebGLRenderer;
@@ -38,7 +39,7 @@ export class Stage {
   private insets: Insets = { left: 0, right: 0, top: 0, bottom: 0 };
 
   constructor(private readonly parent: HTMLElement) {
-    const simple = drawsInSoftware();
+    const { simple } = this;
     document.documentElement.classList.toggle("simple", simple);
     this.renderer = new THREE.WebGLRenderer({ antialias: !simple, powerPreference: "high-performance" });
     this.renderer.setPixelRatio(simple ? 1 : Math.min(2, window.devicePixelRatio));

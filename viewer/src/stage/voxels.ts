@@ -18,7 +18,7 @@ export class VoxelSpheres {
   private readonly bodies: number;
   private shown = "";
 
-  constructor(private readonly run: Run) {
+  constructor(private readonly run: Run, private readonly simple: boolean) {
     this.bodies = run.header.bodies.length;
     const table = (width: number) =>
       new THREE.DataTexture(
@@ -117,7 +117,7 @@ export class VoxelSpheres {
         owner[at++] = body;
       }
     }
-    const base = new THREE.IcosahedronGeometry(1, count > 20_000 ? 1 : count > 4000 ? 2 : 3);
+    const base = new THREE.IcosahedronGeometry(1, count > 20_000 || this.simple ? 1 : count > 4000 ? 2 : 3);
     const geometry = new THREE.InstancedBufferGeometry();
     geometry.setAttribute("position", base.getAttribute("position"));
     geometry.setAttribute("normal", base.getAttribute("position")); // a unit sphere is its own normal

@@ -47,7 +47,8 @@ export class World {
   private readonly bodyRadius: number;
   private loaded = -1;
 
-  constructor(private readonly run: Run) {
+  /** @param simple  draws with less detail, for machines without a graphics card */
+  constructor(private readonly run: Run, simple: boolean) {
     const bodies = run.header.bodies;
     this.moving = bodies.flatMap((body, i) => (body.kind !== "fixed" ? [i] : []));
     this.poses = new Float32Array(kPose * bodies.length);
@@ -63,7 +64,7 @@ export class World {
 
     this.bodies = new Bodies(run);
     this.walls = new Walls(run, this.extent, this.firstPoses());
-    this.spheres = new VoxelSpheres(run);
+    this.spheres = new VoxelSpheres(run, simple);
     this.contactMarkers = new ContactMarkers(0xff3d3d, 0xffb000, 0.9 * this.bodyRadius, this.scales, false);
     this.apparentMarkers = new ContactMarkers(0x00c2d8, 0x0a7fe0, 0.9 * this.bodyRadius, this.scales, true);
     this.centres = new CentreMarkers(this.moving);

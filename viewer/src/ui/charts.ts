@@ -8,7 +8,7 @@ import { format, formatTick, h } from "./dom";
 
 const kColours = ["#3f7fe8", "#f0a030", "#38a87a", "#dd5a8a", "#8d6be0"];
 const kHeight = 92; // pixels, before the charts are fitted to the page
-const kLeastHeight = 54;
+const kLeastHeight = 46;
 const kMostHeight = 120;
 
 interface Chart {

@@ -18,8 +18,8 @@ const recording = join(folder, "run.h5");
 const kSlow = ["world.duration=1000", "time.step=2e-6", "impulse.method=impulse"].flatMap((setting) => ["--set", setting]);
 
 /** Starts a run; gives the process and the address that it prints. */
-function startRun() {
-  const process = spawn(gotai, ["run", scene, ...kSlow, "-o", recording, "--live"]);
+function startRun(...more) {
+  const process = spawn(gotai, ["run", scene, ...kSlow, "-o", recording, "--live", ...more]);
   const ended = new Promise((done) => process.on("exit", done));
   const address = new Promise((done, failed) => {
     let text = "";
@@ -45,6 +45,25 @@ const status = (url, method, headers) =>
     out.on("error", failed);
     out.end();
   });
+
+/** Kills a second run while a page looks at it. */
+async function kill(frames) {
+  const run = startRun("--force");
+  try {
+    const address = await run.address;
+    const opened = await openPage(address, () => true);
+    ({ close } = opened);
+    await opened.page.waitForFunction(() => Number(document.documentElement.dataset.time) > 0.1);
+    run.process.kill("SIGKILL");
+    await run.ended;
+    await opened.page.waitForFunction(() => !document.querySelector(".title p").textContent.includes("live"));
+    assert(true, "the page of a killed run says that it has ended");
+    assert(await status(address, "GET", {}).catch(() => 0) === 0, "nobody serves it any more");
+    assert(frames() > 2, "the recording of a killed run can be read");
+  } finally {
+    run.process.kill("SIGKILL");
+  }
+}
 
 const run = startRun();
 let close = async () => {};
@@ -94,8 +113,9 @@ try {
   run.process.kill("SIGINT");
   await Promise.race([run.ended, new Promise((_, failed) => setTimeout(() => failed(new Error("the run does not end")), 15_000))]);
   assert(run.process.exitCode === 130, "an interrupt ends the run and its server");
-  execFileSync(gotai, ["info", recording], { stdio: "inherit" });
-  assert(true, "its recording can be read");
+  const frames = () => Number(/frames +(\d+)/.exec(execFileSync(gotai, ["info", recording], { encoding: "utf8" }))?.[1]);
+  assert(frames() > 2, "its recording can be read");
+  await kill(frames);
 } catch (error) {
   console.error(error.message, wrong.join("; "));
   process.exitCode = 1;
