@@ -159,6 +159,41 @@ TEST(Apparent, MomentumIsConservedBetweenTwoBodies) {
 
 // Fig. 5-5: one contact at the apparent point, not spread back, cannot slow a body that spins about
 // the normal. Exists only here.
+TEST(Apparent, EveryFaceOfAContainerHasAPointOfItsOwn) {
+  // A cube flies into the corner of a floor and a wall, e = 0: one apparent contact for both would
+  // push along the mean of all normals and leave it moving; one for each stops it.
+  for (const bool one_body : {true, false}) {
+    test::ContactScene scene;
+    scene.surface(0.0, 0.0);
+    const auto cube = scene.add_body(1.0, test::cube_inertia(1.0, 1.0), Vec3::Zero(),
+                                     Vec3(-1, 0, -2), Vec3::Zero());
+    const auto box =
+        scene.add_body(0.0, Mat3::Identity(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero());
+    if (one_body) scene.bodies.geometry[box] = model::Geometry::container;
+    scene.begin_pair(cube, box);
+    for (const double t : {-0.4, 0.4}) {
+      for (const double u : {-0.4, 0.4}) {
+        scene.add_contact(Vec3(t, u, -0.5), Vec3::UnitZ());
+      }
+    }
+    for (const double u : {-0.4, 0.4}) {
+      scene.add_contact(Vec3(-0.5, u, 0), Vec3::UnitX());
+      scene.contacts.feature.back() |= model::FeatureKey{1} << 32U;
+    }
+    const model::SolveReport report =
+        scene.strike(*make_method(test::method_settings(model::ImpulseMethodName::constraint,
+                                                        model::ContactTreatment::apparent,
+                                                        model::SolverName::exact)),
+                     1e-3);
+    EXPECT_EQ(report.rows, one_body ? 2U : 1U);
+    if (one_body) {
+      EXPECT_LE(scene.bodies.v_W[cube].norm(), 1e-10);
+    } else {
+      EXPECT_GE(scene.bodies.v_W[cube].norm(), 0.1);
+    }
+  }
+}
+
 TEST(Apparent, WithoutSpreadingBackASpinningCubeSpinsForEver) {
   test::ContactScene scene;
   scene.surface(0.0, 0.3);

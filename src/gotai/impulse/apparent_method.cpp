@@ -42,13 +42,35 @@ void ApparentMethod::prepare(const model::BodyState& bodies, const model::Contac
   dt_ = plan.dt;
   read_targets(bodies, contacts, materials, targets_);
   islands_ = find_islands(bodies, contacts);
+  find_patches(bodies);
+}
+
+// A container is one body with several faces, the upper half of a contact's feature: a body in its
+// corner touches each of them at an apparent point of its own.
+void ApparentMethod::find_patches(const model::BodyState& bodies) {
+  patches_.clear();
+  first_patch_.assign(1, 0);
+  for (const model::ContactPair& pair : contacts_->pairs) {
+    const bool faces = bodies.geometry[pair.body_a] == model::Geometry::container ||
+                       bodies.geometry[pair.body_b] == model::Geometry::container;
+    model::ContactPair patch = pair;
+    for (std::uint32_t i = pair.begin + 1; faces && i < pair.end; ++i) {
+      if (contacts_->feature[i] >> 32U == contacts_->feature[i - 1] >> 32U) continue;
+      patch.end = i;
+      patches_.push_back(patch);
+      patch.begin = i;
+      patch.end = pair.end;
+    }
+    patches_.push_back(patch);
+    first_patch_.push_back(static_cast<std::uint32_t>(patches_.size()));
+  }
 }
 
 void ApparentMethod::find_weights(const model::BodyState& bodies, const std::vector<double>& gap) {
   v_star_.resize(contacts_->size());
   bias_.resize(contacts_->size());
   apparent_.clear();
-  for (const model::ContactPair& pair : contacts_->pairs) {
+  for (const model::ContactPair& pair : patches_) {
     for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
       v_star_[i] =
           contacts_->normal_W[i].dot(relative_velocity(bodies, pair, contacts_->point_W[i]));
@@ -63,7 +85,7 @@ void ApparentMethod::find_weights(const model::BodyState& bodies, const std::vec
   }
 }
 
-// One row per pair with an approaching contact: sum w_i (row of contact i) / scale, as the force
+// One row per patch with an approaching contact: sum w_i (row of contact i) / scale, as the force
 // and the torque that the spread impulses exert.
 void ApparentMethod::assemble_pairs(const model::BodyState& bodies, const Island& island,
                                     ConeProblem& problem) const {
@@ -79,10 +101,9 @@ void ApparentMethod::assemble_pairs(const model::BodyState& bodies, const Island
         inertia[b].transpose() * bodies.L_W[i];
   }
   problem.patch.push_back(0);
-  for (const std::uint32_t k : island.pairs) {
+  for_each_patch(island, [&](std::uint32_t k) {
     const ApparentContact& apparent = apparent_[k];
-    if (!apparent.exists) continue;
-    const model::ContactPair& pair = contacts_->pairs[k];
+    const model::ContactPair& pair = patches_[k];
     Vec3 force = Vec3::Zero();
     Vec3 moment = Vec3::Zero();  // about the apparent point
     double bias = 0.0;
@@ -111,7 +132,7 @@ void ApparentMethod::assemble_pairs(const model::BodyState& bodies, const Island
     problem.bias.emplace_back(bias + v_star, 0.0, 0.0);
     problem.friction.push_back(0.0);
     problem.patch.push_back(static_cast<std::uint32_t>(problem.size()));
-  }
+  });
   set_compliance(problem, std::vector<double>(problem.size(), 1.0), settings_.impulse.ridge);
 }
 
@@ -133,19 +154,17 @@ void ApparentMethod::solve(const model::BodyState& bodies, const std::vector<dou
         std::max(report_.iterations, static_cast<std::uint32_t>(solution.iterations));
 
     std::size_t row = 0;
-    for (const std::uint32_t k : island.pairs) {
-      if (!apparent_[k].exists) continue;
-      const model::ContactPair& pair = contacts_->pairs[k];
+    for_each_patch(island, [&](std::uint32_t k) {
+      const model::ContactPair& pair = patches_[k];
       const double alpha = solution.p[row++].x() / apparent_[k].scale;  // (5.19)
       for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
         normal_impulse_[i] = alpha * std::max(-v_star_[i], 0.0);
-        const Vec3 impulse = normal_impulse_[i] * contacts_->normal_W[i];
-        velocities_.add_impulse(bodies, pair, contacts_->point_W[i], impulse);
-        update.contact_impulse[i] += impulse;
       }
-    }
+      add_normal_impulses(bodies, *contacts_, pair, normal_impulse_, velocities_,
+                          update.contact_impulse);
+    });
   }
-  for (const model::ContactPair& pair : contacts_->pairs) {
+  for (const model::ContactPair& pair : patches_) {
     add_patch_friction(bodies, *contacts_, pair, targets_.friction[pair.begin], normal_impulse_,
                        velocities_, update.contact_impulse);
   }

@@ -19,7 +19,8 @@ namespace gotai::impulse {
 /// |.|^2 is what the spread impulses really do, so that a pair never gains energy, whatever the
 /// normals (erratum 39).
 ///
-/// Reads every contact that touches; a pair without an approaching one is skipped.
+/// Reads every contact that touches; a pair without an approaching one is skipped. The faces of a
+/// container count as pairs of their own.
 /// Guarantees: one unknown per pair; no energy gain of a pair; friction on the original contacts
 /// (a body spinning about the normal slows down, Fig. 5-5), never reversing the sliding; sticking.
 /// Does not: stop every contact of a pair from approaching in the same step, nor balance moments
@@ -39,6 +40,16 @@ class ApparentMethod final : public ImpulseMethod {
   model::SolveReport report() const override { return report_; }
 
  private:
+  void find_patches(const model::BodyState& bodies);
+  /// Calls visit(index) for the island's patches that have an apparent contact, in order.
+  template <typename Visit>
+  void for_each_patch(const Island& island, const Visit& visit) const {
+    for (const std::uint32_t pair : island.pairs) {
+      for (std::uint32_t k = first_patch_[pair]; k < first_patch_[pair + 1]; ++k) {
+        if (apparent_[k].exists) visit(k);
+      }
+    }
+  }
   void find_weights(const model::BodyState& bodies, const std::vector<double>& gap);
   void assemble_pairs(const model::BodyState& bodies, const Island& island,
                       ConeProblem& problem) const;
@@ -48,9 +59,12 @@ class ApparentMethod final : public ImpulseMethod {
   ContactTargets targets_;
   double dt_ = 0.0;
   std::vector<Island> islands_;
-  std::vector<double> v_star_;             // per contact, normal velocity with gravity [m/s]
-  std::vector<double> bias_;               // per contact, row_bias() [m/s]
-  std::vector<ApparentContact> apparent_;  // per pair
+  std::vector<model::ContactPair> patches_;  // pairs, those with containers cut into their faces
+  std::vector<std::uint32_t>
+      first_patch_;             // patches of pair k: [first_patch_[k], first_patch_[k+1])
+  std::vector<double> v_star_;  // per contact, normal velocity with gravity [m/s]
+  std::vector<double> bias_;    // per contact, row_bias() [m/s]
+  std::vector<ApparentContact> apparent_;  // per patch
   std::vector<double> normal_impulse_;     // per contact [N s]
   WorkingVelocities velocities_;
   model::SolveReport report_;

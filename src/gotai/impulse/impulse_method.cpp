@@ -41,13 +41,11 @@ void SuperposedImpulses::solve(const model::BodyState& bodies, const std::vector
       ++firing;
     }
     report_.rows += firing;
-    for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
-      if (normal_impulse_[i] <= 0.0) continue;
-      if (averaged_) normal_impulse_[i] /= firing;
-      const Vec3 impulse = normal_impulse_[i] * contacts_->normal_W[i];
-      velocities_.add_impulse(bodies, pair, contacts_->point_W[i], impulse);
-      update.contact_impulse[i] += impulse;
+    if (averaged_ && firing > 0) {
+      for (std::uint32_t i = pair.begin; i < pair.end; ++i) normal_impulse_[i] /= firing;
     }
+    add_normal_impulses(bodies, *contacts_, pair, normal_impulse_, velocities_,
+                        update.contact_impulse);
   }
   for (const model::ContactPair& pair : contacts_->pairs) {
     add_patch_friction(bodies, *contacts_, pair, targets_.friction[pair.begin], normal_impulse_,

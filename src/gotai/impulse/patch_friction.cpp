@@ -54,6 +54,17 @@ void WorkingVelocities::write_changes(const model::BodyState& bodies, model::Upd
   }
 }
 
+void add_normal_impulses(const model::BodyState& bodies, const model::ContactSet& contacts,
+                         const model::ContactPair& pair, const std::vector<double>& normal_impulse,
+                         WorkingVelocities& velocities, std::vector<Vec3>& contact_impulse) {
+  for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
+    if (normal_impulse[i] == 0.0) continue;
+    const Vec3 impulse = normal_impulse[i] * contacts.normal_W[i];
+    velocities.add_impulse(bodies, pair, contacts.point_W[i], impulse);
+    contact_impulse[i] += impulse;
+  }
+}
+
 void add_patch_friction(const model::BodyState& bodies, const model::ContactSet& contacts,
                         const model::ContactPair& pair, double friction,
                         const std::vector<double>& normal_impulse, WorkingVelocities& velocities,

@@ -27,6 +27,13 @@ struct WorkingVelocities {
   void write_changes(const model::BodyState& bodies, model::Update& update) const;
 };
 
+/// Normal impulses of the contacts of a pair, acting on the velocities.
+/// @param normal_impulse   per contact of the set [N s]; only the pair's are read
+/// @param[in,out] contact_impulse  per contact [N s], W; added to
+void add_normal_impulses(const model::BodyState& bodies, const model::ContactSet& contacts,
+                         const model::ContactPair& pair, const std::vector<double>& normal_impulse,
+                         WorkingVelocities& velocities, std::vector<Vec3>& contact_impulse);
+
 /// Coulomb friction mu p_n against the sliding direction of every contact (5.18), scaled down as a
 /// whole so that it never reverses the sliding (erratum 41): of the impulses lambda mu p_n t_i with
 /// lambda in [0, 1] those that leave the least kinetic energy.
