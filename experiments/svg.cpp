@@ -13,6 +13,7 @@ namespace {
 constexpr std::array<const char*, 10> kColors{"#1f6fb4", "#d1495b", "#2a9d64", "#e08e1b",
                                               "#7a5bb5", "#12a3a8", "#8c564b", "#c2569b",
                                               "#6b7280", "#98a62b"};
+constexpr std::size_t kPointsPerLine = 500;  // as many as can be told apart
 constexpr double kWidth = 640.0;
 constexpr double kHeight = 400.0;
 constexpr double kLeft = 78.0;
@@ -148,7 +149,10 @@ std::string plot_svg(const Plot& plot) {
     const char* color = kColors[s % kColors.size()];
     std::string points;
     std::string marks;
-    for (std::size_t k = 0; k < std::min(series.x.size(), series.y.size()); ++k) {
+    const std::size_t count = std::min(series.x.size(), series.y.size());
+    const std::size_t stride = 1 + count / kPointsPerLine;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (k % stride != 0 && k + 1 != count) continue;
       if (!drawable(series.x[k], plot.log_x) || !drawable(series.y[k], plot.log_y)) continue;
       points += fmt::format("{:.1f},{:.1f} ", px(series.x[k]), py(series.y[k]));
       if (series.markers)

@@ -35,6 +35,7 @@ Drawing draw_2_2() {
 World ball_on_floor(model::ImpulseMethodName method, const Vec3& v_W) {
   Setup setup;
   setup.level = 1;
+  setup.dt = 1e-6;  // the ball hardly turns while it is hit
   model::Settings settings = settings_of(setup);
   settings.gravity.setZero();
   settings.impulse.method = method;
@@ -57,12 +58,13 @@ Drawing draw_4_3() {
   const Vec3 before(1.0, 0.0, -1.0);
   World sem = ball_on_floor(model::ImpulseMethodName::sem, before);
   World constraint = ball_on_floor(model::ImpulseMethodName::constraint, before);
+  const Vec3 x = sem.bodies().x_W[1];
   sem.step();
   constraint.step();
-  // Of the point that touches: where a mass point would be.
-  const auto touching_velocity = [](const World& world) -> Vec3 {
+  // Of the point that touches, where a mass point would be; its arm is that before the step.
+  const auto touching_velocity = [&](const World& world) -> Vec3 {
     const model::BodyState& bodies = world.bodies();
-    return bodies.v_W[1] + bodies.w_W[1].cross(world.contacts().point_W[0] - bodies.x_W[1]);
+    return bodies.v_W[1] + bodies.w_W[1].cross(world.contacts().point_W[0] - x);
   };
   const Vec3 v_sem = touching_velocity(sem);
   const Vec3 v_c = touching_velocity(constraint);
