@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "gotai/impulse/gauss_seidel_solver.h"
+#include "gotai/impulse/exact_solver.h"
 
 namespace gotai::experiments {
 

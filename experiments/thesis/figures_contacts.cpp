@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "gotai/impulse/gauss_seidel_solver.h"
 #include "thesis/contact_example.h"
 #include "thesis/figures.h"
 

@@ -62,7 +62,8 @@ TEST(Experiment, FallPrintsItsRecordsAndTheyAreThoseOfTheThesis) {
 
 TEST(Experiment, FinishedPointsAreKeptAndMissedNumbersGiveTheExitCode) {
   const TemporaryFolder folder;
-  const std::vector<std::string> arguments{"experiment", "top", "--json", "-o", folder.file("results")};
+  const std::vector<std::string> arguments{"experiment", "top", "--json", "-o",
+                                           folder.file("results")};
   ASSERT_EQ(run_gotai(arguments).exit_code, 0);
   // A kept point is taken as it is: change one, and its number is judged.
   const fs::path records = fs::path(folder.file("results")) / "top" / "records";
