@@ -25,8 +25,9 @@ inline impulse::ConeProblem lcp_problem(const Eigen::MatrixXd& A, const Eigen::V
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
     for (std::uint32_t b = 0; b < problem.blocks; ++b) {
       impulse::Coupling coupling{b, impulse::Jacobian::Zero()};
-      const Eigen::Index count = std::min<Eigen::Index>(6, A.cols() - 6 * b);
-      coupling.J.row(0).head(count) = B.row(i).segment(6 * b, count);
+      const Eigen::Index column = Eigen::Index{6} * b;
+      const Eigen::Index count = std::min<Eigen::Index>(6, A.cols() - column);
+      coupling.J.row(0).head(count) = B.row(i).segment(column, count);
       problem.couplings.push_back(coupling);
     }
     problem.first.push_back(static_cast<std::uint32_t>(problem.couplings.size()));
@@ -93,7 +94,7 @@ inline Eigen::MatrixXd delassus(const impulse::ConeProblem& problem) {
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
     for (std::uint32_t k = problem.first[at]; k < problem.first[at + 1]; ++k) {
-      J.block<3, 6>(3 * i, 6 * problem.couplings[k].block) = problem.couplings[k].J;
+      J.block<3, 6>(3 * i, Eigen::Index{6} * problem.couplings[k].block) = problem.couplings[k].J;
     }
   }
   return J * J.transpose();

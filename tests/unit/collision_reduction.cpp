@@ -129,7 +129,7 @@ TEST(Reduction, SharesKeepTheLeverArmOfASquarePatch) {
       c.point_A = {(i + 0.5) / n - 0.5, (j + 0.5) / n - 0.5, -0.5};
       c.normal_A = Vec3::UnitZ();
       c.area = 1.0 / (n * n);
-      c.feature = static_cast<model::FeatureKey>(n * i + j);
+      c.feature = candidates.size();
       candidates.push_back(c);
     }
   }

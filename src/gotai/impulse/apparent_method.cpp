@@ -124,7 +124,7 @@ void ApparentMethod::assemble_pairs(const model::BodyState& bodies, const Island
       Coupling coupling{block, Jacobian::Zero()};
       coupling.J.row(0) << sign * std::sqrt(bodies.inverse_mass[body]) * force.transpose(),
           sign * torque.transpose() * inertia[block];
-      v_star -= coupling.J.row(0).dot(problem.y_free.segment<6>(6 * block));
+      v_star -= coupling.J.row(0).dot(problem.y_free.segment<6>(Eigen::Index{6} * block));
       problem.couplings.push_back(coupling);
     }
     problem.first.push_back(static_cast<std::uint32_t>(problem.couplings.size()));

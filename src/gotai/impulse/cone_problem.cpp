@@ -20,14 +20,14 @@ void ConeProblem::clear() {
 Vec3 ConeProblem::velocity(std::size_t i, const Eigen::VectorXd& y) const {
   Vec3 c = bias[i];
   for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
-    c.noalias() += couplings[k].J * y.segment<6>(6 * couplings[k].block);
+    c.noalias() += couplings[k].J * y.segment<6>(Eigen::Index{6} * couplings[k].block);
   }
   return c;
 }
 
 void ConeProblem::add_impulse(std::size_t i, const Vec3& p, Eigen::VectorXd& y) const {
   for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
-    y.segment<6>(6 * couplings[k].block).noalias() += couplings[k].J.transpose() * p;
+    y.segment<6>(Eigen::Index{6} * couplings[k].block).noalias() += couplings[k].J.transpose() * p;
   }
 }
 

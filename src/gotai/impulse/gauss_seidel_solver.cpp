@@ -145,7 +145,7 @@ void GaussSeidelSolver::update(const ConeProblem& problem, Patch& patch, double 
                 solution.p.begin() + patch.begin + static_cast<std::ptrdiff_t>(n));
   for (std::size_t b = 0; b < patch.blocks.size(); ++b) {
     local.y_free.segment<6>(static_cast<Eigen::Index>(6 * b)) =
-        solution.y.segment<6>(6 * patch.blocks[b]);
+        solution.y.segment<6>(Eigen::Index{6} * patch.blocks[b]);
   }
   for (std::size_t i = 0; i < n; ++i) local.add_impulse(i, -guess_[i], local.y_free);
 

@@ -225,7 +225,8 @@ bool NewtonSolver::polish(const ConeProblem& problem, double limit, int least_it
     for (std::size_t i = 0; i < problem.size(); ++i) {
       Vec3 motion = Vec3::Zero();
       for (std::uint32_t k = problem.first[i]; k < problem.first[i + 1]; ++k) {
-        motion += problem.couplings[k].J * F_.segment<6>(6 * problem.couplings[k].block);
+        motion +=
+            problem.couplings[k].J * F_.segment<6>(Eigen::Index{6} * problem.couplings[k].block);
       }
       solution.p[i] += p_[i] - D_[i] * motion;
     }

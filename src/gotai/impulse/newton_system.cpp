@@ -95,8 +95,9 @@ bool NewtonSystem::factorise_dense(const ConeProblem& problem, const std::vector
     for (std::uint32_t l = problem.first[i]; l < problem.first[i + 1]; ++l) {
       DJ.noalias() = D[i] * problem.couplings[l].J;
       for (std::uint32_t k = problem.first[i]; k < problem.first[i + 1]; ++k) {
-        H_.block<6, 6>(6 * problem.couplings[k].block, 6 * problem.couplings[l].block).noalias() +=
-            problem.couplings[k].J.transpose() * DJ;
+        H_.block<6, 6>(Eigen::Index{6} * problem.couplings[k].block,
+                       Eigen::Index{6} * problem.couplings[l].block)
+            .noalias() += problem.couplings[k].J.transpose() * DJ;
       }
     }
   }

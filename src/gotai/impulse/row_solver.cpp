@@ -19,7 +19,7 @@ void solve_rows(const ConeProblem& problem, double limit, int max_sweeps, ConeSo
       double inertness = 0.0;
       for (std::uint32_t k = problem.first[i]; k < problem.first[i + 1]; ++k) {
         const auto row = problem.couplings[k].J.row(0);
-        velocity += row.dot(solution.y.segment<6>(6 * problem.couplings[k].block));
+        velocity += row.dot(solution.y.segment<6>(Eigen::Index{6} * problem.couplings[k].block));
         inertness += row.squaredNorm();
       }
       const double p = std::max(0.0, solution.p[i].x() - velocity / inertness);
@@ -28,7 +28,7 @@ void solve_rows(const ConeProblem& problem, double limit, int max_sweeps, ConeSo
       largest_change = std::max(largest_change, std::abs(change) * inertness);
       solution.p[i].x() = p;
       for (std::uint32_t k = problem.first[i]; k < problem.first[i + 1]; ++k) {
-        solution.y.segment<6>(6 * problem.couplings[k].block) +=
+        solution.y.segment<6>(Eigen::Index{6} * problem.couplings[k].block) +=
             change * problem.couplings[k].J.row(0).transpose();
       }
     }
