@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
@@ -107,6 +108,29 @@ TEST(Render, ShadowsDarkenTheFloor) {
       if (shaded.pixel(x, y)[1] + 25 < empty.pixel(x, y)[1]) ++darker;
   EXPECT_GT(darker, 100);
   EXPECT_GT(difference(shaded, empty), 10.0);  // absent bodies are not drawn
+}
+
+TEST(Render, DrawsAHundredHexapodsInHalfASecondOnOneCore) {
+#ifndef NDEBUG
+  GTEST_SKIP() << "a time of the optimised program";
+#endif
+  Still still;
+  still.run.shapes[0].mesh =
+      std::make_shared<geometry::Mesh>(geometry::generate({.shape = "hexapod", .size = 1.0}));
+  for (int i = 0; i < 97; ++i)
+    still.add(Vec3(i % 5 - 2.0, i / 5 % 5 - 2.0, 1.0 + 0.8 * (i / 25)),
+              Quat(Eigen::AngleAxisd(i, Vec3(1.0, 0.3, 0.2).normalized())));
+  const ThreadLimit one(1);
+  const auto seconds = [] {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  };
+  const double begin = seconds();
+  still.draw(640, 360);
+  const double taken = seconds() - begin;
+  RecordProperty("seconds", std::to_string(taken));
+  EXPECT_LT(taken, 0.5);
 }
 
 TEST(FrameCamera, HoldsEverySphere) {

@@ -135,7 +135,7 @@ export class App {
   }
 
   private tick(now: number): void {
-    const seconds = Math.min(0.25, (now - this.last) / 1000);
+    const seconds = Math.min(1, (now - this.last) / 1000); // not all the time that the page was hidden
     this.last = now;
     const before = this.player.time;
     this.player.advance(seconds);

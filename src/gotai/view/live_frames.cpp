@@ -106,6 +106,11 @@ void LiveFrames::close() {
   closing_.notify_all();
 }
 
+bool LiveFrames::is_closed() {
+  const std::scoped_lock lock(mutex_);
+  return closed_;
+}
+
 std::optional<LiveFrames::Next> LiveFrames::next(std::uint64_t number,
                                                  std::chrono::milliseconds patience, bool& closed) {
   std::unique_lock lock(mutex_);

@@ -34,6 +34,7 @@ class LiveFrames {
   void push(LiveFrame frame);
   /// No more frames will come.
   void close();
+  bool is_closed();
 
   struct Next {
     std::uint64_t number = 0;

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "gotai/core/error.h"
@@ -23,6 +24,27 @@ using std::chrono::milliseconds;
 
 // A chart has no room for more points; runs may take thousands of steps for a frame.
 constexpr std::size_t kCurvePointsPerFrame = 4;
+
+/// A page that plays in real time drowns in the frames of a run that is much faster: it gets them
+/// at most so many times as fast as it plays them.
+class Pace {
+ public:
+  void sent(double time) {
+    if (!begin_) begin_ = time;
+    ahead_ = time - *begin_ - kHeadStart - kSpeed * watch_.seconds();
+  }
+  void wait() const {
+    if (ahead_ <= 0.0) return;
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::min(ahead_ / kSpeed, 0.1)));
+  }
+
+ private:
+  static constexpr double kHeadStart = 0.5;  // [s] of the run
+  static constexpr double kSpeed = 3.0;
+  Stopwatch watch_;
+  std::optional<double> begin_;
+  double ahead_ = 0.0;  // [s] of the run
+};
 
 /// Lets frames take a small part of the run's time.
 class Budget {
@@ -170,13 +192,15 @@ void LiveServer::State::send_events(std::uint64_t first, httplib::Response& resp
   has_been_seen = true;
   response.set_chunked_content_provider(
       "text/event-stream",
-      [this, number = first](std::size_t, httplib::DataSink& sink) mutable {
+      [this, number = first, pace = Pace()](std::size_t, httplib::DataSink& sink) mutable {
         if (stopping) return false;
         bool closed = false;
+        if (!frames.is_closed()) pace.wait();
         const auto next = frames.next(number, milliseconds(500), closed);
         std::string text;
         if (next) {
           number = next->number + 1;
+          pace.sent(next->frame->frame.time);
           text =
               fmt::format("id: {}\nevent: frame\ndata: {}\n\n", next->number, encode(*next->frame));
         } else {
