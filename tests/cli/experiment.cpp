@@ -49,7 +49,9 @@ TEST(Experiment, FallPrintsItsRecordsAndTheyAreThoseOfTheThesis) {
     EXPECT_FALSE(r.contains("curves"));
     if (r["method"] != "C") continue;
     const int level = r["level"];
-    if (r["model"] == "surface") EXPECT_LT(r["rms"].get<double>(), 0.002) << r;
+    if (r["model"] == "surface") {
+      EXPECT_LT(r["rms"].get<double>(), 0.002) << r;
+    }
     if (r["model"] != "spheres" || r["integrator"] != "semi-implicit") continue;
     const double rms = expected[static_cast<std::size_t>(level - 1)];
     EXPECT_NEAR(r["rms"].get<double>(), rms, 0.03 * rms) << r;
