@@ -26,7 +26,7 @@ TEST(Experiment, ListNamesEveryFigureOfTheThesis) {
 
 TEST(Experiment, UnknownNamesAreAnsweredWithTheNamesThatExist) {
   const Outcome outcome = run_gotai({"experiment", "fal"});
-  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("fal"));
   EXPECT_THAT(outcome.err, HasSubstr("superpose"));
 }
