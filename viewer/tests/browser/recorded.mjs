@@ -99,8 +99,19 @@ async function handle(page) {
   await page.keyboard.press("Escape");
 
   await grab(page); // until the charts lie where they stay
-  const chart = await page.locator(".charts section .u-over").first().boundingBox();
+  const overlay = page.locator(".charts section .u-over").first();
+  let chart = await overlay.boundingBox();
+  for (let last = null; JSON.stringify(chart) !== JSON.stringify(last); ) {
+    last = chart;
+    await page.waitForTimeout(300);
+    chart = await overlay.boundingBox();
+  }
   await page.mouse.click(chart.x + chart.width / 4, chart.y + chart.height / 2);
+  // The time bar follows with the next picture.
+  await page.waitForFunction(() => {
+    const bar = document.querySelector("#time");
+    return Math.abs(Number(bar.value) - Number(bar.max) / 4) < Number(bar.max) / 20;
+  }, undefined, { timeout: 10000 }).catch(() => {});
   const [time, end] = await page.$eval("#time", (bar) => [Number(bar.value), Number(bar.max)]);
   assert(Math.abs(time - end / 4) < end / 20, "a click on a chart seeks");
 
