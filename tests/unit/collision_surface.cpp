@@ -8,6 +8,7 @@
 
 #include "gotai/collision/find_contacts.h"
 #include "gotai/collision/surface_contacts.h"
+#include "gotai/collision/surface_sample.h"
 #include "gotai/collision/surface_search.h"
 #include "gotai/core/error.h"
 #include "gotai/core/parallel.h"

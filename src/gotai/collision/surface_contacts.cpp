@@ -6,7 +6,10 @@
 #include <limits>
 #include <utility>
 
+#include "gotai/collision/pair_motion.h"
 #include "gotai/collision/relative_pose.h"
+#include "gotai/collision/surface_faces.h"
+#include "gotai/collision/surface_sample.h"
 
 namespace gotai::collision {
 namespace {
@@ -14,21 +17,6 @@ namespace {
 using model::BodyIndex;
 using model::BodyState;
 using Shapes = std::span<const std::shared_ptr<const voxel::Shape>>;
-
-Vec3 to_double(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
-
-Vec3 sample_point(const voxel::SurfaceModel& model, std::uint32_t sample) {
-  const voxel::PointPacket& packet = model.tree.points[sample / voxel::kLanes];
-  const std::uint32_t lane = sample % voxel::kLanes;
-  return model.center + Vec3(packet.x[lane], packet.y[lane], packet.z[lane]);
-}
-
-// The part of a sample's surface that faces the other body, which lies in direction `toward` (unit,
-// the sample's frame) [m^2]. Never zero, so that areas can weigh.
-double facing_area(const voxel::SurfaceModel& model, std::uint32_t sample, const Vec3& toward) {
-  return std::max(to_double(model.tree.vector_area[sample]).dot(toward),
-                  1e-3 * model.spacing * model.spacing);
-}
 
 SamplePose sample_pose(const Pose& X_BA, const voxel::SurfaceModel& a,
                        const voxel::SurfaceModel& b) {
@@ -41,57 +29,10 @@ float search_margin(double margin) {
   return static_cast<double>(rounded) > margin ? std::nextafter(rounded, 0.0F) : rounded;
 }
 
-// Reaches, as fractions of the smaller body's size: of contacts at rest; of what impacts elsewhere
-// may add to the approach within a step; and the farthest between shapes.
-constexpr double kRestReach = 0.003;
-constexpr double kImpactReach = 0.025;
-constexpr double kFarthestReach = 0.1;
-constexpr double kApproachSafety = 1.3;
 // The deepest contact is taken beside remembered ones only if deeper by this fraction of the size.
 constexpr double kDepthStep = 2e-4;
 // Interpolated distances are off by less than half the diagonal of a cell [cells].
 constexpr double kFieldError = 0.9;
-
-// How two bodies move against each other, in the frame of body a (its axes, its centre of mass).
-class PairMotion {
- public:
-  PairMotion(const BodyState& bodies, const BodyPair& pair, double dt) : dt_(dt) {
-    const BodyIndex a = pair.body_a;
-    const BodyIndex b = pair.body_b;
-    size_ = 2.0 * bodies.bounding_radius[a];
-    between_shapes_ = bodies.geometry[b] == model::Geometry::shape;
-    if (between_shapes_) size_ = std::min(size_, 2.0 * bodies.bounding_radius[b]);
-    const Quat q_AW = bodies.q_WB[a].conjugate();
-    v_A_ =
-        q_AW * (bodies.v_W[a] - bodies.v_W[b] - bodies.w_W[b].cross(bodies.x_W[a] - bodies.x_W[b]));
-    w_A_ = q_AW * (bodies.w_W[a] - bodies.w_W[b]);
-    fastest_ = v_A_.norm() + w_A_.norm() * bodies.bounding_radius[a];
-  }
-
-  double size() const { return size_; }
-  // No point of a moves farther against b in the step [m].
-  double farthest() const { return fastest_ * dt_; }
-
-  // The margin up to which contacts of this pair matter in the step [m].
-  double reach(double margin) const {
-    if (!(dt_ > 0.0)) return margin;
-    const double needed = kRestReach * size_ + farthest();
-    return std::min({margin, needed, between_shapes_ ? kFarthestReach * size_ : needed});
-  }
-
-  bool may_close(const ContactCandidate& c) const {
-    if (!(dt_ > 0.0)) return true;
-    const double approach = std::max(0.0, -c.normal_A.dot(v_A_ + w_A_.cross(c.point_A)));
-    return c.gap <= (kRestReach + kImpactReach) * size_ + kApproachSafety * approach * dt_;
-  }
-
- private:
-  double dt_;
-  double size_;
-  bool between_shapes_;
-  Vec3 v_A_, w_A_;  // of a against b, at a's centre of mass
-  double fastest_;  // no point of a moves faster against b [m/s]
-};
 
 // Samples of one body, P, in the field of the other, Q.
 class FieldContacts {
@@ -253,84 +194,6 @@ class FieldContacts {
   Mat3 R_QP_;
 };
 
-// A half space that bodies rest on, in the frame of its body U: height is normal . p_U + offset.
-struct Face {
-  Vec3 normal;
-  double offset;
-};
-
-// Samples of body a above the faces of body b.
-class FaceContacts {
- public:
-  FaceContacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes)
-      : bodies_(bodies),
-        a_(pair.body_a),
-        b_(pair.body_b),
-        model_(shapes[bodies.shape[pair.body_a]]->surface),
-        X_UA_(relative_pose({bodies.x_W[pair.body_b], bodies.q_WB[pair.body_b]},
-                            bodies.mesh_pose(pair.body_a))),
-        R_UA_(X_UA_.q.toRotationMatrix()) {}
-
-  void append_plane(double margin, const PairMotion& motion, SurfaceScratch& scratch) const {
-    append({Vec3::UnitZ(), 0.0}, 0, margin, motion, scratch, [](const Vec3&) { return true; });
-  }
-
-  // Faces of the open-top box: they act below its rim, and only on bodies whose centre is inside or
-  // points that are.
-  void append_container(double margin, const PairMotion& motion, SurfaceScratch& scratch) const {
-    const Vec3 half = bodies_.half_extent[b_];
-    const auto above_floor_area = [&half](const Vec3& p_U) {
-      return std::abs(p_U.x()) <= half.x() && std::abs(p_U.y()) <= half.y();
-    };
-    const bool body_inside =
-        above_floor_area(bodies_.q_WB[b_].conjugate() * (bodies_.x_W[a_] - bodies_.x_W[b_]));
-    const auto acts = [&](const Vec3& p_U) { return body_inside || above_floor_area(p_U); };
-    append({Vec3::UnitZ(), 0.0}, 0, margin, motion, scratch, acts);
-    const std::array<Face, 4> walls{{{Vec3::UnitX(), half.x()},
-                                     {-Vec3::UnitX(), half.x()},
-                                     {Vec3::UnitY(), half.y()},
-                                     {-Vec3::UnitY(), half.y()}}};
-    for (std::uint32_t w = 0; w < walls.size(); ++w) {
-      append(walls[w], w + 1, margin, motion, scratch,
-             [&](const Vec3& p_U) { return p_U.z() <= half.z() && acts(p_U); });
-    }
-  }
-
- private:
-  // @param acts  (point in U): does the face act on it?
-  template <typename Acts>
-  void append(const Face& face, std::uint32_t index, double margin, const PairMotion& motion,
-              SurfaceScratch& scratch, const Acts& acts) const {
-    const Vec3 n_A = R_UA_.transpose() * face.normal;
-    const double offset = face.normal.dot(X_UA_.p) + face.offset;
-    const Eigen::Vector3f n = n_A.cast<float>();
-    // Heights are searched in single precision with room to spare, then computed in double.
-    const double slack = 1e-5 * (model_.edge + std::abs(offset));
-    search_half_space(model_.tree, {n.x(), n.y(), n.z()},
-                      static_cast<float>(offset + n_A.dot(model_.center)),
-                      static_cast<float>(margin + slack), scratch.search);
-    for (const SurfaceHit& hit : scratch.search.hits) {
-      const Vec3 x_A = sample_point(model_, hit.sample);
-      ContactCandidate c;
-      c.gap = n_A.dot(x_A) + offset;
-      if (c.gap > margin || fit_to_normal_cone(model_.tree, hit.sample, -n_A).isZero()) continue;
-      if (!acts(X_UA_ * x_A)) continue;
-      c.point_A = x_A - bodies_.p_MB[a_];
-      c.normal_A = n_A;
-      c.area = facing_area(model_, hit.sample, -n_A);
-      c.share_A = c.point_A;
-      c.feature = surface_feature(index, hit.sample);
-      if (motion.may_close(c)) scratch.candidates.push_back(c);
-    }
-  }
-
-  const BodyState& bodies_;
-  BodyIndex a_, b_;
-  const voxel::SurfaceModel& model_;
-  Pose X_UA_;  // a's mesh frame in the frame of the faces
-  Mat3 R_UA_;
-};
-
 // The part of the memory that belongs to a pair.
 std::span<const model::ContactMemory::Entry> remembered(
     std::span<const model::ContactMemory::Entry> memory, const BodyPair& pair) {
@@ -382,29 +245,6 @@ void emit(const BodyState& bodies, const BodyPair& pair, const ContactCandidate&
 
 }  // namespace
 
-Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, const Vec3& toward) {
-  const Vec3 axis = to_double(tree.normal[sample]).normalized();
-  const double cosine = static_cast<double>(tree.cone_cosine[sample]);
-  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
-  Vec3 d = toward;
-  if (tree.edge[sample] >= 0) {
-    // Normals of an edge are perpendicular to it.
-    const auto edge = static_cast<std::size_t>(tree.edge[sample]);
-    const Vec3 along = to_double(tree.edge_direction[edge]).normalized();
-    d -= d.dot(along) * along;
-    const double length = d.norm();
-    if (length < 1e-6) return Vec3::Zero();
-    d /= length;
-  }
-  const double along_axis = d.dot(axis);
-  if (along_axis >= cosine) return d;
-  // More than 89 degrees from every normal: the surface lies along the other body, not against it.
-  constexpr double kGrazing = 0.0175;
-  if (along_axis <= kGrazing - sine) return Vec3::Zero();
-  const Vec3 across = d - along_axis * axis;
-  return cosine * axis + (sine / across.norm()) * across;
-}
-
 void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
                              ExactSurfaces exact, double margin, const SearchOptions& options,
                              SurfaceScratch& scratch, model::ContactSet& out, NearPair* near) {
@@ -417,12 +257,7 @@ void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shap
       FieldContacts(bodies, pair, shapes, samples_of_b).append(reach, motion, one_way, scratch);
     }
   } else {
-    const FaceContacts faces(bodies, pair, shapes);
-    if (bodies.geometry[pair.body_b] == model::Geometry::plane) {
-      faces.append_plane(reach, motion, scratch);
-    } else {
-      faces.append_container(reach, motion, scratch);
-    }
+    append_face_contacts(bodies, pair, shapes, reach, motion, scratch);
   }
   if (scratch.candidates.empty()) return;
   const auto begin = static_cast<std::uint32_t>(out.size());
@@ -433,12 +268,11 @@ void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shap
     reduce_contacts(scratch.candidates, remembered(options.memory, pair),
                     {.length = motion.size(),
                      .depth_step = kDepthStep * motion.size(),
-                     .reach = kRestReach * motion.size()},
+                     .reach = motion.rest_reach()},
                     scratch.reduction);
     scratch.reduction_error = std::max(scratch.reduction_error, scratch.reduction.error);
     if (!exact.empty() && bodies.geometry[pair.body_b] == model::Geometry::shape) {
-      refine_kept(bodies, pair, shapes, exact, kRestReach * motion.size(), options.dt > 0.0,
-                  scratch);
+      refine_kept(bodies, pair, shapes, exact, motion.rest_reach(), options.dt > 0.0, scratch);
     }
     for (const std::uint32_t k : scratch.reduction.kept) {
       emit(bodies, pair, scratch.candidates[k], R_WA, R_WB, out);

@@ -26,12 +26,6 @@ constexpr model::FeatureKey surface_feature(std::uint32_t direction, std::uint32
   return static_cast<model::FeatureKey>(direction) << 32U | sample;
 }
 
-/// Turns the normal that a field suggests into one that the sample's own surface allows: the
-/// nearest direction in the cone of its outward normals, across the edge for samples of an edge.
-/// @param toward  unit, from the sample into the other body; the sample's frame S
-/// @return the same, within the cone; zero when the sample faces away from the other body
-Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, const Vec3& toward);
-
 /// What the last search of a pair leaves for the next: the samples of body a in the field of body
 /// b, and the other way round.
 using NearPair = std::array<NearSamples, 2>;
@@ -50,9 +44,10 @@ using ExactSurfaces = std::span<const std::unique_ptr<const ExactSurface>>;
 
 /// Appends the contacts of one pair with a gap up to the margin; body_a has a shape, body_b a
 /// shape, a plane or a container. Contacts that cannot close within options.dt are left out. With
-/// options.contacts = reduced few remain, which stand for the others' areas; of
-/// those, samples of edges slide along their edge to where it is nearest, and gaps near edges are
-/// measured to the triangles, since a field rounds them.
+/// options.contacts = reduced few remain, which stand for the others' areas, and gaps that may
+/// carry are measured to the triangles: in a step (options.dt > 0) of every such sample where it
+/// is, so that gaps do not jump; else near edges, which a field rounds, with samples of edges
+/// sliding along theirs to where it is nearest.
 /// @param shapes  indexed by BodyState::shape, with surface models
 /// @param exact   likewise; empty: gaps are the fields'
 /// @param margin  [m], >= 0

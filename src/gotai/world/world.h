@@ -57,7 +57,6 @@ class World {
   explicit World(const model::Settings& settings = {});
 
   // ---- building
-  // -----------------------------------------------------------------------------------
   /// @throws InvalidArgument when the shape is prepared to a coarser level than the settings ask
   /// for
   ShapeId add_shape(std::shared_ptr<const voxel::Shape> shape);
@@ -71,7 +70,6 @@ class World {
   void remove_body(BodyId id);
 
   // ---- reading and changing bodies
-  // ----------------------------------------------------------------
   const model::BodyState& bodies() const { return bodies_; }
   /// Column of a body. @throws InvalidArgument for an id that does not exist
   model::BodyIndex index(BodyId id) const;
@@ -91,7 +89,6 @@ class World {
   std::vector<BodyContact> contacts_of(BodyId id) const;
 
   // ---- stepping
-  // -----------------------------------------------------------------------------------
   /// One step [Makino 2007, Fig. 4-9]: detect, compute impulses, update.
   /// @throws SimulationError naming step and body when the state stops being finite or the energy
   /// runs away
@@ -103,7 +100,6 @@ class World {
   void add_observer(Observer observer) { observers_.push_back(std::move(observer)); }
 
   // ---- measurements
-  // -------------------------------------------------------------------------------
   double time() const { return time_; }
   std::uint64_t step_count() const { return step_count_; }
   const model::Settings& settings() const { return settings_; }

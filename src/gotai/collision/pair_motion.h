@@ -1,0 +1,67 @@
+/// @file
+/// How far the two bodies of a pair may come towards each other within a step.
+#pragma once
+
+#include <algorithm>
+
+#include "gotai/collision/broad_phase.h"
+#include "gotai/collision/reduction.h"
+#include "gotai/model/body_state.h"
+
+namespace gotai::collision {
+
+/// How two bodies move against each other within a step, in the frame of body a (its axes, its
+/// centre of mass), and which contacts matter then. Lengths in metres.
+class PairMotion {
+ public:
+  /// @param dt  [s]; 0: not in a step, everything within a margin matters
+  PairMotion(const model::BodyState& bodies, const BodyPair& pair, double dt) : dt_(dt) {
+    const model::BodyIndex a = pair.body_a;
+    const model::BodyIndex b = pair.body_b;
+    size_ = 2.0 * bodies.bounding_radius[a];
+    between_shapes_ = bodies.geometry[b] == model::Geometry::shape;
+    if (between_shapes_) size_ = std::min(size_, 2.0 * bodies.bounding_radius[b]);
+    const Quat q_AW = bodies.q_WB[a].conjugate();
+    v_A_ =
+        q_AW * (bodies.v_W[a] - bodies.v_W[b] - bodies.w_W[b].cross(bodies.x_W[a] - bodies.x_W[b]));
+    w_A_ = q_AW * (bodies.w_W[a] - bodies.w_W[b]);
+    fastest_ = v_A_.norm() + w_A_.norm() * bodies.bounding_radius[a];
+  }
+
+  /// Diameter about the smaller body.
+  double size() const { return size_; }
+  /// Gap up to which contacts at rest may carry.
+  double rest_reach() const { return kRestReach * size_; }
+  /// No point of a moves farther against b in the step.
+  double farthest() const { return fastest_ * dt_; }
+
+  /// The margin up to which contacts of this pair matter in the step.
+  double reach(double margin) const {
+    if (!(dt_ > 0.0)) return margin;
+    const double needed = rest_reach() + farthest();
+    return std::min({margin, needed, between_shapes_ ? kFarthestReach * size_ : needed});
+  }
+
+  /// Can this contact close within the step?
+  bool may_close(const ContactCandidate& c) const {
+    if (!(dt_ > 0.0)) return true;
+    const double approach = std::max(0.0, -c.normal_A.dot(v_A_ + w_A_.cross(c.point_A)));
+    return c.gap <= (kRestReach + kImpactReach) * size_ + kApproachSafety * approach * dt_;
+  }
+
+ private:
+  // Reaches, as fractions of size(): of contacts at rest; of what impacts elsewhere may add to the
+  // approach within a step; and the farthest between shapes.
+  static constexpr double kRestReach = 0.003;
+  static constexpr double kImpactReach = 0.025;
+  static constexpr double kFarthestReach = 0.1;
+  static constexpr double kApproachSafety = 1.3;
+
+  double dt_;
+  double size_;
+  bool between_shapes_;
+  Vec3 v_A_, w_A_;  // of a against b, at a's centre of mass
+  double fastest_;  // no point of a moves faster against b [m/s]
+};
+
+}  // namespace gotai::collision

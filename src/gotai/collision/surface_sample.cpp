@@ -1,0 +1,42 @@
+#include "gotai/collision/surface_sample.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gotai::collision {
+
+Vec3 sample_point(const voxel::SurfaceModel& model, std::uint32_t sample) {
+  const voxel::PointPacket& packet = model.tree.points[sample / voxel::kLanes];
+  const std::uint32_t lane = sample % voxel::kLanes;
+  return model.center + Vec3(packet.x[lane], packet.y[lane], packet.z[lane]);
+}
+
+double facing_area(const voxel::SurfaceModel& model, std::uint32_t sample, const Vec3& toward) {
+  return std::max(to_double(model.tree.vector_area[sample]).dot(toward),
+                  1e-3 * model.spacing * model.spacing);
+}
+
+Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, const Vec3& toward) {
+  const Vec3 axis = to_double(tree.normal[sample]).normalized();
+  const double cosine = static_cast<double>(tree.cone_cosine[sample]);
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  Vec3 d = toward;
+  if (tree.edge[sample] >= 0) {
+    // Normals of an edge are perpendicular to it.
+    const auto edge = static_cast<std::size_t>(tree.edge[sample]);
+    const Vec3 along = to_double(tree.edge_direction[edge]).normalized();
+    d -= d.dot(along) * along;
+    const double length = d.norm();
+    if (length < 1e-6) return Vec3::Zero();
+    d /= length;
+  }
+  const double along_axis = d.dot(axis);
+  if (along_axis >= cosine) return d;
+  // More than 89 degrees from every normal: the surface lies along the other body, not against it.
+  constexpr double kGrazing = 0.0175;
+  if (along_axis <= kGrazing - sine) return Vec3::Zero();
+  const Vec3 across = d - along_axis * axis;
+  return cosine * axis + (sine / across.norm()) * across;
+}
+
+}  // namespace gotai::collision
