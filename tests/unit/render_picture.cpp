@@ -118,9 +118,12 @@ TEST(Render, DrawsAHundredHexapodsInHalfASecondOnOneCore) {
   Still still;
   still.run.shapes[0].mesh =
       std::make_shared<geometry::Mesh>(geometry::generate({.shape = "hexapod", .size = 1.0}));
-  for (int i = 0; i < 97; ++i)
-    still.add(Vec3(i % 5 - 2.0, i / 5 % 5 - 2.0, 1.0 + 0.8 * (i / 25)),
+  for (int i = 0; i < 97; ++i) {
+    const int layer = i / 25;
+    const int row = i / 5 % 5;
+    still.add(Vec3(i % 5 - 2.0, row - 2.0, 1.0 + 0.8 * layer),
               Quat(Eigen::AngleAxisd(i, Vec3(1.0, 0.3, 0.2).normalized())));
+  }
   const ThreadLimit one(1);
   const auto seconds = [] {
     timespec now{};
