@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "gotai/core/error.h"
+#include "gotai/core/hash.h"
 #include "gotai/recording/checkpoint.h"
 #include "gotai/recording/hdf5_file.h"
 #include "gotai/recording/recording_reader.h"
@@ -243,6 +244,21 @@ TEST(Checkpoint, DamageIsNoticed) {
     bad.resize(i);
     EXPECT_THROW(from_bytes(bad, "a.h5"), FileError);
   }
+}
+
+// Found by fuzz_checkpoint: what was left over of an array was dropped without a word.
+TEST(Checkpoint, ArraysOfAnotherLengthThanTheBodiesAreRefused) {
+  // Version, four counters, two times, lengths of the ids and of the hash: no body, but one number
+  // where its place would be.
+  constexpr std::size_t kLengthOfPlaces = 4 + 4 * 8 + 2 * 8 + 2 * 8;
+  std::vector<std::uint8_t> bytes = to_bytes(Checkpoint{});
+  bytes.resize(bytes.size() - sizeof(Hash128));
+  bytes.at(kLengthOfPlaces) = 1;
+  bytes.insert(bytes.begin() + kLengthOfPlaces + 8, sizeof(double), 0);
+  const Hash128 hash = Hasher().bytes(bytes.data(), bytes.size()).digest();
+  const auto* begin = reinterpret_cast<const std::uint8_t*>(&hash);
+  bytes.insert(bytes.end(), begin, begin + sizeof hash);
+  EXPECT_THROW(from_bytes(bytes, "a.h5"), FileError);
 }
 
 }  // namespace

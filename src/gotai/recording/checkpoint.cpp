@@ -194,18 +194,19 @@ Checkpoint from_bytes(const std::vector<std::uint8_t>& bytes, const std::string&
   packed.visit(reader);
   Checkpoint out;
   Snapshot& s = out.snapshot;
+  const std::size_t n = packed.ids.size();
+  const bool sizes_agree = packed.x.size() == 3 * n && packed.q.size() == 4 * n &&
+                           packed.v.size() == 3 * n && packed.L.size() == 3 * n &&
+                           packed.w.size() == 3 * n;
+  if (packed.version != kVersion || !reader.is_at_end() || !sizes_agree ||
+      !unpack(packed.memory, s.memory)) {
+    reader.fail();
+  }
   unpack(packed.x, s.x_W);
   unpack(packed.q, s.q_WB);
   unpack(packed.v, s.v_W);
   unpack(packed.L, s.L_W);
   unpack(packed.w, s.w_W);
-  const std::size_t n = packed.ids.size();
-  const bool sizes_agree = s.x_W.size() == n && s.q_WB.size() == n && s.v_W.size() == n &&
-                           s.L_W.size() == n && s.w_W.size() == n;
-  if (packed.version != kVersion || !reader.is_at_end() || !sizes_agree ||
-      !unpack(packed.memory, s.memory)) {
-    reader.fail();
-  }
   s.time = packed.time;
   s.last_dt = packed.last_dt;
   s.step_count = packed.step_count;
