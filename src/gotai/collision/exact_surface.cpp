@@ -3,7 +3,9 @@
 namespace gotai::collision {
 
 ExactSurface::ExactSurface(const voxel::Shape& shape)
-    : surface(shape.mesh), tree(voxel::make_triangle_tree(surface, shape.surface.center)) {}
+    : surface(shape.mesh),
+      tree(voxel::make_triangle_tree(surface, shape.surface.center)),
+      curved(shape.surface, surface) {}
 
 voxel::ClosestPoint ExactSurface::nearest(const Vec3& x, double limit) const {
   const Eigen::Vector3f p = (x - tree.center).cast<float>();

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "gotai/collision/curved_samples.h"
 #include "gotai/collision/surface_search.h"
 #include "gotai/core/types.h"
 #include "gotai/voxel/shape.h"
@@ -31,6 +32,7 @@ struct ExactSurface {
 
   voxel::SignedDistance surface;
   voxel::TriangleTree tree;
+  CurvedSamples curved;
 };
 
 }  // namespace gotai::collision

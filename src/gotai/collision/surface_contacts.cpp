@@ -37,7 +37,9 @@ constexpr double kFieldError = 0.9;
 // Samples of one body, P, in the field of the other, Q.
 class FieldContacts {
  public:
-  FieldContacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes, bool samples_of_b)
+  // @param exact  empty: samples stay where they are
+  FieldContacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes, ExactSurfaces exact,
+                bool samples_of_b)
       : samples_of_b_(samples_of_b),
         p_MA_(bodies.p_MB[pair.body_a]),
         samples_(shapes[bodies.shape[samples_of_b ? pair.body_b : pair.body_a]]->surface),
@@ -45,7 +47,10 @@ class FieldContacts {
         X_QP_(samples_of_b
                   ? relative_pose(bodies.mesh_pose(pair.body_a), bodies.mesh_pose(pair.body_b))
                   : relative_pose(bodies.mesh_pose(pair.body_b), bodies.mesh_pose(pair.body_a))),
-        R_QP_(X_QP_.q.toRotationMatrix()) {}
+        R_QP_(X_QP_.q.toRotationMatrix()) {
+    const std::uint32_t shape = bodies.shape[samples_of_b ? pair.body_b : pair.body_a];
+    if (!exact.empty() && exact[shape] != nullptr) curved_ = &exact[shape]->curved;
+  }
 
   void append(double margin, const PairMotion& motion, NearSamples* near,
               SurfaceScratch& scratch) const {
@@ -107,35 +112,44 @@ class FieldContacts {
   // normals jump as bodies rock, and piles never rest (of 500 hexapods 492 kept moving, at 3e-3
   // m/s).
   void refine_in_place(const ExactSurface& exact, ContactCandidate& c) const {
-    const auto sample = static_cast<std::uint32_t>(c.feature);
     const double error = kFieldError * field_.field.cell;
-    const Vec3 own_P = sample_point(samples_, sample);
-    const double distance = exact.nearest(X_QP_ * own_P, std::abs(c.gap) + error).distance;
+    const Vec3 own_A = samples_of_b_ ? Vec3(c.point_A - c.gap * c.normal_A) : c.point_A;
+    const Vec3 own_Q = samples_of_b_ ? Vec3(own_A + p_MA_) : Vec3(X_QP_ * (own_A + p_MA_));
+    const double distance = exact.nearest(own_Q, std::abs(c.gap) + error).distance;
     if (!(std::abs(distance - c.gap) <= error)) return;
     c.gap = distance;
-    if (samples_of_b_) c.point_A = X_QP_ * own_P - p_MA_ + c.gap * c.normal_A;
+    if (samples_of_b_) c.point_A = own_A + c.gap * c.normal_A;
   }
 
  private:
+  // A point of P in Q's field.
+  struct FieldPoint {
+    Vec3 x_P;
+    double distance;
+    Vec3 gradient_P;
+  };
+
   void append(const SurfaceHit& hit, const PairMotion& motion,
               std::vector<ContactCandidate>& out) const {
-    const Vec3 gradient_P = R_QP_.transpose() * to_double(hit.gradient);
-    const double length = gradient_P.norm();
+    const CurvedSample* bent = curved_ == nullptr ? nullptr : curved_->find(hit.sample);
+    FieldPoint own{sample_point(samples_, hit.sample), hit.distance,
+                   R_QP_.transpose() * to_double(hit.gradient)};
+    if (bent != nullptr && !follow(*bent, own)) return;
+    const double length = own.gradient_P.norm();
     // Where the field has no slope (the middle of a body) the sample's own normal is all there is.
-    const Vec3 toward = length > 1e-3 ? Vec3(-gradient_P / length)
+    const Vec3 toward = length > 1e-3 ? Vec3(-own.gradient_P / length)
                                       : to_double(samples_.tree.normal[hit.sample]).normalized();
     const Vec3 d_P = fit_to_normal_cone(samples_.tree, hit.sample, toward);
     if (d_P.isZero()) return;
     ContactCandidate c;
-    c.gap = hit.distance;
+    c.gap = own.distance;
     c.area = facing_area(samples_, hit.sample, d_P);
-    const Vec3 own_P = sample_point(samples_, hit.sample);
     if (samples_of_b_) {
       c.normal_A = R_QP_ * d_P;
-      c.point_A = X_QP_ * own_P - p_MA_ + c.gap * c.normal_A;
+      c.point_A = X_QP_ * own.x_P - p_MA_ + c.gap * c.normal_A;
     } else {
       c.normal_A = -d_P;
-      c.point_A = own_P - p_MA_;
+      c.point_A = own.x_P - p_MA_;
     }
     c.share_A = c.point_A;
     c.feature = surface_feature(samples_of_b_ ? 1 : 0, hit.sample);
@@ -147,18 +161,47 @@ class FieldContacts {
     if (motion.may_close(c)) out.push_back(c);
   }
 
-  struct FieldPoint {
-    Vec3 x_P;
-    double distance;  // in Q's field
-  };
+  FieldPoint look_up(const Vec3& x_P) const {
+    const voxel::FieldValue there = voxel::evaluate(field_.field, X_QP_ * x_P - field_.center);
+    return {x_P, there.distance, R_QP_.transpose() * there.gradient};
+  }
+
+  // Slides a point of a curved surface to where it faces Q. Q may be curved too: the direction
+  // turns on the way, and where two slides end tells where the next would, so that the third is
+  // there.
+  // @return false where others stand for that place; not while the sample itself overlaps
+  bool follow(const CurvedSample& sample, FieldPoint& own) const {
+    constexpr double kStraight = 0.05;
+    constexpr double kSteepest = 0.5;
+    const auto slide_from = [&](const FieldPoint& at) {
+      return slide_to_face(sample, -at.gradient_P.normalized());
+    };
+    const auto is_near = [&](const Eigen::Vector2d& slide) {
+      return slide.norm() <= curved_->reach();
+    };
+    Eigen::Vector2d slide = slide_from(own);
+    if (!is_near(slide)) return own.distance <= 0.0;
+    FieldPoint there = look_up(samples_.center + slid_point(sample, slide));
+    const Eigen::Vector2d turn = slide_from(there) - slide;
+    if (turn.norm() > kStraight * slide.norm()) {
+      for (int k = 0; k < 2; ++k) {
+        const double share = slide[k] == 0.0 ? 0.0 : std::min(turn[k] / slide[k], kSteepest);
+        slide[k] /= 1.0 - share;
+      }
+      there = look_up(samples_.center + slid_point(sample, slide));
+    }
+    if (there.distance < own.distance) own = there;
+    return true;
+  }
+
   // A sample or, if deeper, one of the vertices that it stands for.
   FieldPoint deepest_vertex(std::uint32_t sample, double gap) const {
     const voxel::SurfaceTree& tree = samples_.tree;
-    FieldPoint deepest{sample_point(samples_, sample), gap};
+    FieldPoint deepest{sample_point(samples_, sample), gap, Vec3::Zero()};
     for (std::uint32_t v = tree.first_vertex[sample]; v < tree.first_vertex[sample + 1]; ++v) {
       const Vec3 x_P = samples_.center + to_double(tree.vertex[v]);
       const double distance = voxel::evaluate(field_.field, X_QP_ * x_P - field_.center).distance;
-      if (distance < deepest.distance) deepest = {x_P, distance};
+      if (distance < deepest.distance) deepest = {x_P, distance, Vec3::Zero()};
     }
     return deepest;
   }
@@ -192,6 +235,7 @@ class FieldContacts {
   const voxel::SurfaceModel& field_;
   Pose X_QP_;  // P's mesh frame in Q's
   Mat3 R_QP_;
+  const CurvedSamples* curved_ = nullptr;  // of P
 };
 
 // The part of the memory that belongs to a pair.
@@ -213,8 +257,8 @@ void refine_kept(const BodyState& bodies, const BodyPair& pair, Shapes shapes, E
   for (const std::uint32_t k : scratch.reduction.kept) {
     deepest = std::min(deepest, scratch.candidates[k].gap);
   }
-  const FieldContacts of_a(bodies, pair, shapes, false);
-  const FieldContacts of_b(bodies, pair, shapes, true);
+  const FieldContacts of_a(bodies, pair, shapes, exact, false);
+  const FieldContacts of_b(bodies, pair, shapes, exact, true);
   const ExactSurface* exact_a = exact[bodies.shape[pair.body_a]].get();
   const ExactSurface* exact_b = exact[bodies.shape[pair.body_b]].get();
   for (const std::uint32_t k : scratch.reduction.kept) {
@@ -250,14 +294,17 @@ void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shap
                              SurfaceScratch& scratch, model::ContactSet& out, NearPair* near) {
   const PairMotion motion(bodies, pair, options.dt);
   const double reach = motion.reach(margin);
+  // Bodies move on the smooth surfaces that their meshes stand for; outside steps meshes decide.
+  const ExactSurfaces smooth = options.dt > 0.0 ? exact : ExactSurfaces{};
   scratch.candidates.clear();
   if (bodies.geometry[pair.body_b] == model::Geometry::shape) {
     for (const bool samples_of_b : {false, true}) {
       NearSamples* one_way = near == nullptr ? nullptr : &(*near)[samples_of_b ? 1 : 0];
-      FieldContacts(bodies, pair, shapes, samples_of_b).append(reach, motion, one_way, scratch);
+      FieldContacts(bodies, pair, shapes, smooth, samples_of_b)
+          .append(reach, motion, one_way, scratch);
     }
   } else {
-    append_face_contacts(bodies, pair, shapes, reach, motion, scratch);
+    append_face_contacts(bodies, pair, shapes, smooth, reach, motion, scratch);
   }
   if (scratch.candidates.empty()) return;
   const auto begin = static_cast<std::uint32_t>(out.size());

@@ -22,14 +22,16 @@ struct Face {
 // Samples of body a above the faces of body b.
 class FaceContacts {
  public:
-  FaceContacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes)
+  FaceContacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
+               const CurvedSamples* curved)
       : bodies_(bodies),
         a_(pair.body_a),
         b_(pair.body_b),
         model_(shapes[bodies.shape[pair.body_a]]->surface),
         X_UA_(relative_pose({bodies.x_W[pair.body_b], bodies.q_WB[pair.body_b]},
                             bodies.mesh_pose(pair.body_a))),
-        R_UA_(X_UA_.q.toRotationMatrix()) {}
+        R_UA_(X_UA_.q.toRotationMatrix()),
+        curved_(curved) {}
 
   void append_plane(double margin, const PairMotion& motion, SurfaceScratch& scratch) const {
     append({Vec3::UnitZ(), 0.0}, 0, margin, motion, scratch, [](const Vec3&) { return true; });
@@ -70,7 +72,13 @@ class FaceContacts {
                       static_cast<float>(offset + n_A.dot(model_.center)),
                       static_cast<float>(margin + slack), scratch.search);
     for (const SurfaceHit& hit : scratch.search.hits) {
-      const Vec3 x_A = sample_point(model_, hit.sample);
+      Vec3 x_A = sample_point(model_, hit.sample);
+      if (const CurvedSample* bent = curved_ == nullptr ? nullptr : curved_->find(hit.sample)) {
+        const Eigen::Vector2d slide = slide_to_face(*bent, -n_A);
+        const bool is_near = slide.norm() <= curved_->reach();
+        if (!is_near && hit.distance > 0.0F) continue;
+        if (is_near) x_A = model_.center + slid_point(*bent, slide);
+      }
       ContactCandidate c;
       c.gap = n_A.dot(x_A) + offset;
       if (c.gap > margin || fit_to_normal_cone(model_.tree, hit.sample, -n_A).isZero()) continue;
@@ -89,13 +97,16 @@ class FaceContacts {
   const voxel::SurfaceModel& model_;
   Pose X_UA_;  // a's mesh frame in the frame of the faces
   Mat3 R_UA_;
+  const CurvedSamples* curved_;  // of a, or null
 };
 
 }  // namespace
 
 void append_face_contacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
-                          double margin, const PairMotion& motion, SurfaceScratch& scratch) {
-  const FaceContacts faces(bodies, pair, shapes);
+                          ExactSurfaces exact, double margin, const PairMotion& motion,
+                          SurfaceScratch& scratch) {
+  const ExactSurface* surface = exact.empty() ? nullptr : exact[bodies.shape[pair.body_a]].get();
+  const FaceContacts faces(bodies, pair, shapes, surface == nullptr ? nullptr : &surface->curved);
   if (bodies.geometry[pair.body_b] == model::Geometry::plane) {
     faces.append_plane(margin, motion, scratch);
   } else {

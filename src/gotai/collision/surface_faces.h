@@ -16,6 +16,7 @@ namespace gotai::collision {
 /// @param margin  largest gap [m]
 void append_face_contacts(const model::BodyState& bodies, const BodyPair& pair,
                           std::span<const std::shared_ptr<const voxel::Shape>> shapes,
-                          double margin, const PairMotion& motion, SurfaceScratch& scratch);
+                          ExactSurfaces exact, double margin, const PairMotion& motion,
+                          SurfaceScratch& scratch);
 
 }  // namespace gotai::collision
