@@ -38,7 +38,10 @@ voxel::Pyramid make_test_pyramid(const voxel::VoxelGrid& grid, int max_level,
   std::vector<bool> filled(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) *
                            static_cast<std::size_t>(n));
   const auto at = [n](int x, int y, int z) {
-    return static_cast<std::size_t>(x + n * (y + n * z));
+    return static_cast<std::size_t>(x) +
+           static_cast<std::size_t>(n) *
+               (static_cast<std::size_t>(y) +
+                static_cast<std::size_t>(n) * static_cast<std::size_t>(z));
   };
   const auto index_of = [](int x, int y, int z) {
     return std::array<std::uint16_t, 3>{static_cast<std::uint16_t>(x),

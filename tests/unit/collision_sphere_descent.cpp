@@ -15,6 +15,7 @@ using VoxelPair = DescentTrace::VoxelPair;
 
 std::vector<VoxelPair> voxel_pairs(const std::vector<SphereOverlap>& overlaps) {
   std::vector<VoxelPair> pairs;
+  pairs.reserve(overlaps.size());
   for (const SphereOverlap& o : overlaps) pairs.push_back({o.a, o.b});
   return pairs;
 }

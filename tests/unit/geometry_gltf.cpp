@@ -145,12 +145,12 @@ TEST(Gltf, HostileDocuments) {
   EXPECT_THAT(with("/buffers/0/uri", "data:;base64,***"), HasSubstr("base64"));
   EXPECT_THAT(with("/accessors/0/count", 4000000000U), HasSubstr("larger than its bufferView"));
   EXPECT_THAT(with("/accessors/0/byteOffset", 44), HasSubstr("larger than its bufferView"));
-  EXPECT_THAT(with("/accessors/0/count", -1), HasSubstr("larger than its bufferView"));
+  EXPECT_THAT(with("/accessors/0/count", -1), HasSubstr("a whole number should be"));
   EXPECT_THAT(with("/accessors/0/sparse", json::object()), HasSubstr("sparse"));
   EXPECT_THAT(with("/bufferViews/0/byteLength", 500), HasSubstr("larger than its buffer"));
   EXPECT_THAT(with("/bufferViews/0/byteStride", 0), HasSubstr("larger than its bufferView"));
   EXPECT_THAT(with("/scenes/0/nodes/0", 7), HasSubstr("nodes 7 does not exist"));
-  EXPECT_THAT(with("/nodes/0/mesh", "x"), HasSubstr("no valid glTF"));
+  EXPECT_THAT(with("/nodes/0/mesh", "x"), HasSubstr("a whole number should be"));
   EXPECT_THAT(with("/nodes/0/matrix", json{1, 2, 3}), HasSubstr("16 numbers"));
   EXPECT_THAT(with("/asset/version", "1.0"), HasSubstr("only 2.0"));
   EXPECT_THAT(with("/meshes/0/primitives/0/extensions", {{"KHR_draco_mesh_compression", 1}}),
@@ -161,6 +161,23 @@ TEST(Gltf, HostileDocuments) {
     ADD_FAILURE();
   } catch (const FileError& error) {
     EXPECT_THAT(error.what(), HasSubstr("nested too deeply"));
+  }
+}
+
+TEST(Gltf, CountsAndIndicesAreWholeNumbers) {
+  json document = tetrahedron({{{"mesh", 0}}});
+  document["accessors"][0]["count"] = 4.0;  // JSON knows no difference
+  EXPECT_EQ(read_mesh("t.gltf", document.dump()).report.vertices, 4u);
+  for (const json& wrong : {json(2.2e26), json(1.5), json(-1), json("4"), json(nullptr)}) {
+    for (const char* place :
+         {"/accessors/0/count", "/accessors/0/bufferView", "/accessors/1/componentType",
+          "/bufferViews/1/byteOffset", "/bufferViews/0/byteLength", "/buffers/0/byteLength",
+          "/scenes/0/nodes/0", "/nodes/0/mesh", "/meshes/0/primitives/0/indices"}) {
+      json bad = tetrahedron({{{"mesh", 0}}});
+      bad[json::json_pointer(place)] = wrong;
+      EXPECT_THAT(error_of(bad), HasSubstr(wrong.dump() + " stands where a whole number should be"))
+          << place;
+    }
   }
 }
 

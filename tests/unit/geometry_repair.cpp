@@ -26,10 +26,13 @@ Mesh surface_of(const GeneratorOptions& options) {
 
 void reverse(Triangle& t) { std::swap(t[1], t[2]); }
 
-void append(Mesh& mesh, Mesh other, const Vec3& offset) {
+/// `other` may be the mesh itself.
+void append(Mesh& mesh, const Mesh& other, const Vec3& offset) {
   const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const Vec3& v : other.vertices) mesh.vertices.push_back(v + offset);
-  for (const Triangle& t : other.triangles)
+  const std::vector<Triangle> triangles = other.triangles;
+  const std::vector<Vec3> vertices = other.vertices;
+  for (const Vec3& v : vertices) mesh.vertices.push_back(v + offset);
+  for (const Triangle& t : triangles)
     mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
 }
 

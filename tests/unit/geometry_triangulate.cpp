@@ -28,6 +28,7 @@ void expect_filled(const std::vector<Vec2>& polygon) {
   Random random(11);
   const Quat rotation = random.rotation();
   std::vector<Vec3> vertices;
+  vertices.reserve(polygon.size());
   for (const Vec2& p : polygon) vertices.push_back(rotation * Vec3(p.x(), p.y(), 0.0));
   std::vector<std::uint32_t> corners(polygon.size());
   std::iota(corners.begin(), corners.end(), 0U);

@@ -48,7 +48,8 @@ World flying_bodies() {
   for (int i = 0; i < 200; ++i) {
     BodyDescription body;
     body.shape = static_cast<std::uint32_t>(i % 2);
-    body.X_WM.p = Vec3(3.0 * (i % 15), 3.0 * (i / 15), 0.0);
+    const int row = i / 15;
+    body.X_WM.p = Vec3(3.0 * (i % 15), 3.0 * row, 0.0);
     body.velocity = Vec3(0.0, 0.0, 5.0 + 0.01 * i);
     body.angular_velocity = Vec3(0.02 * i, 3.0 - 0.01 * i, 1.0);
     world.add_body(body);

@@ -163,7 +163,7 @@ TEST(KilledWriter, LosesNothingThatWasFlushed) {
     ASSERT_THAT(last, ElementsAre(batches - 1)) << "a flush is all or nothing";
     for (std::size_t i = 0; i < a.size(); ++i) {
       ASSERT_EQ(a[i], i / kRows);
-      ASSERT_EQ(b[40 * i + 7], static_cast<double>(i / kRows));
+      ASSERT_EQ(b[40 * i + 7], static_cast<double>(a[i]));
     }
     Hdf5File again = Hdf5File::append(path);
     again.append_rows<std::uint64_t>("/a", {7});
@@ -215,7 +215,7 @@ TEST(FullDisk, KeepsWhatWasFlushed) {
   const std::string path = folder.file("a.h5");
   struct rlimit before {};
   getrlimit(RLIMIT_FSIZE, &before);
-  const auto old_handler = signal(SIGXFSZ, SIG_IGN);
+  auto* const old_handler = signal(SIGXFSZ, SIG_IGN);
   std::uint64_t flushed = 0;
   std::string message;
   {

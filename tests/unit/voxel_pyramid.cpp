@@ -28,6 +28,7 @@ geometry::Mesh golden_mesh(const nlohmann::json& json) {
 std::vector<std::uint32_t> linear(const std::vector<VoxelIndex>& voxels, int level) {
   const std::uint32_t n = 1U << static_cast<unsigned>(level - 1);
   std::vector<std::uint32_t> list;
+  list.reserve(voxels.size());
   for (const VoxelIndex& v : voxels) list.push_back(v[0] + n * (v[1] + n * v[2]));
   std::sort(list.begin(), list.end());
   return list;

@@ -33,8 +33,9 @@ TEST(Pyramid2, AgreesWithTheTestOfEverySquareAndTriangle) {
     const SquareGrid grid = square_grid_around(mesh);
     for (const int level : {1, 3, 6}) {
       std::size_t count = 0;
-      for (std::uint16_t iy = 0; iy < 1 << (level - 1); ++iy)
-        for (std::uint16_t ix = 0; ix < 1 << (level - 1); ++ix) {
+      const auto side = static_cast<std::uint16_t>(1 << (level - 1));
+      for (std::uint16_t iy = 0; iy < side; ++iy)
+        for (std::uint16_t ix = 0; ix < side; ++ix) {
           const Vec2 p = grid.square_center(level, {ix, iy});
           const auto holds = [&](const geometry::Triangle& t) {
             for (std::size_t e = 0; e < 3; ++e) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "gotai/core/error.h"
@@ -18,7 +19,7 @@ constexpr int kDeepestNesting = 64;
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 
-std::size_t component_bytes(int type) {
+std::size_t component_bytes(std::uint64_t type) {
   switch (type) {
     case 5120:
     case 5121:
@@ -42,7 +43,7 @@ std::size_t component_count(const std::string& type) {
   return 0;
 }
 
-double read_component(BinaryReader& in, int type, bool normalized) {
+double read_component(BinaryReader& in, std::uint64_t type, bool normalized) {
   const auto as = [normalized](auto value) {
     using T = decltype(value);
     if (!normalized) return static_cast<double>(value);
@@ -118,7 +119,7 @@ GltfData::GltfData(const Source& source) : source_(source) {
     fail(fmt::format("glTF version {} is not read, only 2.0", version.dump()));
   if (!document_.contains("buffers")) return;
   for (const json& buffer : document_.at("buffers")) {
-    const auto length = buffer.at("byteLength").get<std::uint64_t>();
+    const auto length = whole_number(buffer.at("byteLength"));
     std::string_view bytes = binary_chunk_;
     if (buffer.contains("uri")) {
       fetched_.reserve(document_.at("buffers").size());  // views into it must stay valid
@@ -178,6 +179,20 @@ std::string GltfData::fetch(const std::string& uri) const {
   return read_bytes(source_.path.parent_path() / relative);
 }
 
+std::uint64_t GltfData::whole_number(const json& value) const {
+  constexpr double kEndOfExactNumbers = 9007199254740992.0;  // 2^53
+  if (value.is_number_unsigned()) return value.get<std::uint64_t>();
+  const double number = value.is_number_float() ? value.get<double>() : -1.0;
+  if (!(number >= 0.0 && number < kEndOfExactNumbers) || std::floor(number) != number)
+    fail(fmt::format("{} stands where a whole number should be", value.dump().substr(0, 40)));
+  return static_cast<std::uint64_t>(number);
+}
+
+std::uint64_t GltfData::whole_number(const json& object, const char* key,
+                                     std::uint64_t when_missing) const {
+  return object.contains(key) ? whole_number(object.at(key)) : when_missing;
+}
+
 const json& GltfData::entry(const char* name, std::size_t index) const {
   const json& array = document_.at(name);
   if (!array.is_array() || index >= array.size())
@@ -189,20 +204,20 @@ std::vector<double> GltfData::read_accessor(std::size_t index, std::size_t compo
   const json& accessor = entry("accessors", index);
   if (accessor.contains("sparse") || !accessor.contains("bufferView"))
     fail(fmt::format("accessor {} is sparse; export the mesh without sparse accessors", index));
-  const json& view = entry("bufferViews", accessor.at("bufferView").get<std::size_t>());
-  const auto buffer = view.at("buffer").get<std::size_t>();
+  const json& view = entry("bufferViews", whole_number(accessor.at("bufferView")));
+  const auto buffer = whole_number(view.at("buffer"));
   if (buffer >= buffers_.size()) fail(fmt::format("buffer {} does not exist", buffer));
 
-  const int type = accessor.at("componentType").get<int>();
+  const std::uint64_t type = whole_number(accessor.at("componentType"));
   const std::size_t bytes = component_bytes(type);
   if (bytes == 0 || component_count(accessor.at("type").get<std::string>()) != components)
     fail(fmt::format("accessor {} has the wrong type", index));
-  const std::uint64_t view_offset = view.value("byteOffset", std::uint64_t{0});
-  const std::uint64_t view_length = view.at("byteLength").get<std::uint64_t>();
-  const std::uint64_t offset = accessor.value("byteOffset", std::uint64_t{0});
-  const std::uint64_t count = accessor.at("count").get<std::uint64_t>();
+  const std::uint64_t view_offset = whole_number(view, "byteOffset", 0);
+  const std::uint64_t view_length = whole_number(view.at("byteLength"));
+  const std::uint64_t offset = whole_number(accessor, "byteOffset", 0);
+  const std::uint64_t count = whole_number(accessor.at("count"));
   const std::uint64_t element = bytes * components;
-  const std::uint64_t stride = view.value("byteStride", element);
+  const std::uint64_t stride = whole_number(view, "byteStride", element);
   if (view_offset > buffers_[buffer].size() || view_length > buffers_[buffer].size() - view_offset)
     fail(fmt::format("bufferView of accessor {} is larger than its buffer", index));
   if (stride < element || stride > 4096 ||

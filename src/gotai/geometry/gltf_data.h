@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -23,6 +24,13 @@ class GltfData {
 
   /// Entry `index` of the top-level array `name`.
   const nlohmann::json& entry(const char* name, std::size_t index) const;
+
+  /// A count, an index, an offset; 3.0 is one too, anything else but a whole number is an error.
+  std::uint64_t whole_number(const nlohmann::json& value) const;
+
+  /// The same of a member that may be missing.
+  std::uint64_t whole_number(const nlohmann::json& object, const char* key,
+                             std::uint64_t when_missing) const;
 
   /// All components of an accessor, converted (normalised integers to [-1, 1] or [0, 1]).
   /// @param components  how many per element it must have

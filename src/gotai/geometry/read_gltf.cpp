@@ -39,8 +39,8 @@ class GltfReader {
   std::vector<std::size_t> roots() const {
     const json& document = data_.document();
     if (document.contains("scenes") && !document.at("scenes").empty()) {
-      const json& scene = data_.entry("scenes", document.value("scene", std::size_t{0}));
-      return scene.value("nodes", std::vector<std::size_t>{});
+      const json& scene = data_.entry("scenes", data_.whole_number(document, "scene", 0));
+      return indices(scene, "nodes");
     }
     // Without scenes: every node that is nobody's child.
     const std::size_t count = document.contains("nodes") ? document.at("nodes").size() : 0;
@@ -54,8 +54,14 @@ class GltfReader {
     return result;
   }
 
-  static std::vector<std::size_t> children(const json& node) {
-    return node.value("children", std::vector<std::size_t>{});
+  std::vector<std::size_t> children(const json& node) const { return indices(node, "children"); }
+
+  /// The array `name` of indices; empty when there is none.
+  std::vector<std::size_t> indices(const json& object, const char* name) const {
+    std::vector<std::size_t> result;
+    if (!object.contains(name)) return result;
+    for (const json& index : object.at(name)) result.push_back(data_.whole_number(index));
+    return result;
   }
 
   Eigen::Matrix4d transform_of(const json& node) const {
@@ -93,7 +99,7 @@ class GltfReader {
         data_.fail(fmt::format("node {} has two parents or is its own ancestor", task.node));
       visited_[task.node] = true;
       const Eigen::Matrix4d transform = task.transform * transform_of(node);
-      if (node.contains("mesh")) add_mesh(node.at("mesh").get<std::size_t>(), transform);
+      if (node.contains("mesh")) add_mesh(data_.whole_number(node.at("mesh")), transform);
       skinned_ |= node.contains("skin");
       const std::vector<std::size_t> below = children(node);
       for (auto child = below.rbegin(); child != below.rend(); ++child)
@@ -107,7 +113,7 @@ class GltfReader {
   }
 
   void add_primitive(const json& primitive, const Eigen::Matrix4d& transform) {
-    const int mode = primitive.value("mode", 4);
+    const std::uint64_t mode = data_.whole_number(primitive, "mode", 4);
     if (mode < 4 || mode > 6) {
       ++ignored_;
       return;
@@ -117,11 +123,11 @@ class GltfReader {
         if (primitive.at("extensions").contains(packed))
           data_.fail(fmt::format("uses {}; export the mesh without compression", packed));
     const std::vector<double> positions =
-        data_.read_accessor(primitive.at("attributes").at("POSITION").get<std::size_t>(), 3);
+        data_.read_accessor(data_.whole_number(primitive.at("attributes").at("POSITION")), 3);
     const std::size_t count = positions.size() / 3;
     std::vector<double> indices;
     if (primitive.contains("indices"))
-      indices = data_.read_accessor(primitive.at("indices").get<std::size_t>(), 1);
+      indices = data_.read_accessor(data_.whole_number(primitive.at("indices")), 1);
     else
       for (std::size_t i = 0; i < count; ++i) indices.push_back(static_cast<double>(i));
     if (out_.corners.size() + 3 * (count + indices.size()) > most_corners_)
@@ -139,7 +145,7 @@ class GltfReader {
     add_triangles(mode, indices, base, mirrored);
   }
 
-  void add_triangles(int mode, const std::vector<double>& indices, std::size_t base,
+  void add_triangles(std::uint64_t mode, const std::vector<double>& indices, std::size_t base,
                      bool mirrored) {
     const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
       if (mirrored) std::swap(b, c);

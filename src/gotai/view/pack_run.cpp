@@ -155,10 +155,12 @@ void add_curves(std::span<const model::StepReport> steps, std::size_t most,
                     "overlap, residual and times, the last energies.",
                     (steps.size() + most - 1) / most));
   std::vector<double> times;
+  times.reserve(points.size());
   for (const CurvePoint& point : points) times.push_back(point.time);
   container.add("steps.time", times);
   for (std::size_t c = 0; c < curves().size(); ++c) {
     std::vector<float> values;
+    values.reserve(points.size());
     for (const CurvePoint& point : points) values.push_back(static_cast<float>(point.values[c]));
     container.add("steps." + curves()[c].name, values);
   }

@@ -30,9 +30,10 @@ void add_facts(const RecordingReader& reader, RunView& run) {
     for (const auto& [section, values] : settings.items())
       if (values.is_object())
         for (const auto& [key, value] : values.items())
-          run.facts.emplace_back(section + "." + key, text(value));
+          run.facts.emplace_back(fmt::format("{}.{}", section, key), text(value));
     if (settings.contains("gravity")) run.facts.emplace_back("gravity", text(settings["gravity"]));
-    run.level = settings.value(json::json_pointer("/collision/level"), 0);
+    const json level = settings.value(json::json_pointer("/collision/level"), json());
+    run.level = level.is_number_integer() ? level.get<int>() : 0;
     const json gravity = settings.value("gravity", json::array());
     if (gravity.size() == 3)
       for (std::size_t k = 0; k < 3; ++k)
