@@ -3,8 +3,10 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -44,6 +46,13 @@ void write_record(const fs::path& path, const Record& record) {
   fs::rename(partial, path);
 }
 
+/// Processor time of the whole program [s].
+double processor_seconds() {
+  return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
+}
+
+/// Runs a point and keeps its record, with what it took: "wall_s", and "cpu_s", which has the
+/// points beside it in it when several run at once.
 Record run_point(const Experiment& experiment, const Json& point, const fs::path& folder,
                  Effort effort) {
   const fs::path path = record_path(folder, effort, point);
@@ -51,13 +60,30 @@ Record run_point(const Experiment& experiment, const Json& point, const fs::path
   fs::create_directories(files);
   Record record = point;
   try {
+    const Stopwatch clock;
+    const double processor_start = processor_seconds();
     record.update(experiment.run(point, files.string()));
+    record["wall_s"] = clock.seconds();
+    record["cpu_s"] = processor_seconds() - processor_start;
   } catch (const std::exception& error) {
     throw Error(
         fmt::format("experiment {}, point {}: {}", experiment.id, point.dump(), error.what()));
   }
   write_record(path, record);
   return record;
+}
+
+/// Numbers of the thesis's figures that an outcome shows, in its order.
+std::vector<std::string> figures_of(const Outcome& outcome) {
+  std::vector<std::string> numbers;
+  const auto add = [&](const std::string& figure) {
+    if (!figure.empty() && std::find(numbers.begin(), numbers.end(), figure) == numbers.end())
+      numbers.push_back(figure);
+  };
+  for (const Plot& plot : outcome.plots) add(plot.figure);
+  for (const Picture& picture : outcome.pictures) add(picture.figure);
+  for (const Animation& animation : outcome.animations) add(animation.figure);
+  return numbers;
 }
 
 std::string cpu_model() {
@@ -136,6 +162,11 @@ Result run_experiment(const Experiment& experiment, const RunOptions& options) {
   result.wall_s = clock.seconds();
   result.outcome = experiment.conclude(result.records, options.effort);
   result.provenance = provenance();
+  for (const char* seconds : {"wall_s", "cpu_s"}) {
+    double sum = 0.0;
+    for (const Record& record : result.records) sum += record.value(seconds, 0.0);
+    result.provenance[seconds] = sum;
+  }
   return result;
 }
 
@@ -151,6 +182,11 @@ Json to_json(const Result& result) {
     record.erase("curves");
     j["results"].push_back(std::move(record));
   }
+  j["figures"] = Json::array();
+  for (const std::string& figure : figures_of(result.outcome)) j["figures"].push_back(figure);
+  j["tables"] = Json::array();
+  for (const Table& table : result.outcome.tables)
+    if (!table.number.empty()) j["tables"].push_back(table.number);
   j["verdicts"] = Json::array();
   for (const Verdict& v : result.outcome.verdicts)
     j["verdicts"].push_back(

@@ -45,6 +45,12 @@ Trajectory run_drop(const Setup& setup, const Drop& drop, double duration, Json&
   World world = world_with_floor(setup);
   add_drop(world, drop);
   Totals totals(world);
+  Trajectory trajectory = sample(world, duration);
+  totals.write(record);
+  return trajectory;
+}
+
+Trajectory sample(World& world, double duration) {
   Trajectory trajectory;
   const int samples = static_cast<int>(std::lround(50.0 * duration));
   for (int k = 1; k <= samples; ++k) {
@@ -54,7 +60,6 @@ Trajectory run_drop(const Setup& setup, const Drop& drop, double duration, Json&
       if (world.bodies().is_dynamic(i)) row.push_back(world.bodies().x_W[i]);
     trajectory.push_back(row);
   }
-  totals.write(record);
   return trajectory;
 }
 
@@ -66,17 +71,20 @@ double mean_error(const Trajectory& a, const Trajectory& b, double extent) {
   return count > 0 ? sum / (extent * static_cast<double>(count)) : 0.0;
 }
 
-void add_crowd(World& world, const std::string& scene, const Setup& setup) {
-  Random random(7);
+void add_crowd(World& world, const std::string& scene, const Setup& setup, std::uint64_t seed) {
+  Random random(seed);
   geometry::GeneratorOptions options;
   if (scene == "blocks") {
     options.shape = "cube";
-    add_grid(world, world.add_shape(prepare(options, 5, setup)), 3, 3, 1.4, 0.8, random, false);
+    add_grid(world, world.add_shape(prepare(options, kFinestPrepared, setup)), 3, 3, 1.4, 0.8,
+             random, false);
     options.shape = "hexapod";
-    add_grid(world, world.add_shape(prepare(options, 5, setup)), 2, 2, 2.4, 6.0, random, true);
+    add_grid(world, world.add_shape(prepare(options, kFinestPrepared, setup)), 2, 2, 2.4, 6.0,
+             random, true);
   } else {
     options.shape = "rock";
-    add_grid(world, world.add_shape(prepare(options, 5, setup)), 4, 4, 1.2, 0.8, random, true);
+    add_grid(world, world.add_shape(prepare(options, kFinestPrepared, setup)), 4, 4, 1.45, 0.9,
+             random, true);
   }
 }
 

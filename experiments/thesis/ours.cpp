@@ -1,11 +1,9 @@
-// Experiments of our own: what sphere normals lose, what a stack, a spin, a top and a fast body
-// need.
+// Experiments of our own: what sphere normals lose, what a stack, a spin and a top need.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "gotai/core/random.h"
 #include "gotai/dynamics/integrate.h"
 #include "thesis/catalogue.h"
 #include "thesis/scenario.h"
@@ -16,7 +14,7 @@ namespace {
 std::shared_ptr<const voxel::Shape> cube(const Setup& setup) {
   geometry::GeneratorOptions options;
   options.shape = "cube";
-  return prepare(options, setup.level, setup);
+  return prepare(options, kFinestPrepared, setup);
 }
 
 /// A point for each level of each model.
@@ -45,7 +43,7 @@ Json run_slip(const Json& point, const std::string& /*folder*/) {
   slab.shape = "cube";
   slab.size = 3.0;
   BodyDescription base;
-  base.shape = world.add_shape(prepare(slab, setup.level, setup));
+  base.shape = world.add_shape(prepare(slab, kFinestPrepared, setup));
   base.kind = model::BodyKind::fixed;
   base.X_WM.p = Vec3(0.0, 0.0, -1.5);
   world.add_body(base);
@@ -194,14 +192,11 @@ Outcome conclude_spin(const std::vector<Record>& records, Effort /*effort*/) {
     const std::string what = fmt::format("time to stop, {}, {}, level {} [s]",
                                          r["method"].get<std::string>(), model, level);
     const double stop = r["stop_s"];
-    if (model == "spheres" && r["method"] == "C") {
+    if (model == "spheres") {
       const double expected = uniform[static_cast<std::size_t>(level - 3)];
       outcome.verdicts.push_back({what, fmt::format("{:.4f} within 2 steps", expected),
                                   fmt::format("{:.4f}", stop),
                                   std::abs(stop - expected) <= 2.0 * r["dt"].get<double>() + 5e-5});
-    } else if (model == "spheres") {
-      outcome.verdicts.push_back(
-          within(what, stop, uniform[static_cast<std::size_t>(level - 3)], 0.02));
     } else {
       surface_errors.push_back(std::abs(stop - kContinuumStop));
       if (level == 5) outcome.verdicts.push_back(within(what, stop, kContinuumStop, 0.02));
@@ -270,107 +265,6 @@ Outcome conclude_top(const std::vector<Record>& records, Effort /*effort*/) {
   }
   outcome.plots.push_back(plot);
   return outcome;
-}
-
-// ---- tunnelling
-// --------------------------------------------------------------------------------------
-
-Json run_tunnel(const Json& point, const std::string& /*folder*/) {
-  Setup setup;
-  setup.level = 4;
-  setup.restitution = 0.5;
-  setup.model = point["model"];
-  geometry::GeneratorOptions options;
-  options.shape = "hexapod";
-  const std::shared_ptr<const voxel::Shape> shape = prepare(options, kFinestPrepared, setup);
-  const double sigma = point["safety"];
-  const int runs = point["runs"];
-  int crossed = 0;
-  int missed = 0;
-  double energy_ratio = 0.0;
-  Random random(11);
-  for (int k = 0; k < runs; ++k) {
-    const double speed = 5.0;
-    const double r = shape->pyramid.grid.voxel_radius(setup.level);
-    setup.dt = sigma * r / speed;
-    model::Settings settings = settings_of(setup);
-    settings.gravity.setZero();
-    World world(settings);
-    model::Material material;
-    material.restitution = setup.restitution;
-    material.friction = 0.0;
-    world.set_default_material(material);
-    const ShapeId id = world.add_shape(shape);
-    const Vec3 aside(0.0, random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2));
-    const double start = 2.2 + random.uniform(0.0, 2.0 * setup.dt * speed);
-    add_unit_body(world, id, Vec3(-start, 0.0, 0.0), random.rotation(), Vec3(speed, 0.0, 0.0));
-    add_unit_body(world, id, Vec3(start, 0.0, 0.0) + aside, random.rotation(),
-                  Vec3(-speed, 0.0, 0.0));
-    const double before = world.energy().total();
-    bool touched = false;
-    world.add_observer([&](const World&, const model::StepReport& report) {
-      touched = touched || report.contacts > 0;
-    });
-    world.run_until(2.0 * start / speed);
-    if (!touched) ++missed;
-    if (world.bodies().x_W[0].x() > world.bodies().x_W[1].x()) ++crossed;
-    energy_ratio = std::max(energy_ratio, world.energy().total() / before);
-  }
-  Json record;
-  record["crossed"] = crossed;
-  record["undetected"] = missed;
-  record["energy_ratio_max"] = energy_ratio;
-  return record;
-}
-
-Outcome conclude_tunnel(const std::vector<Record>& records, Effort /*effort*/) {
-  Outcome outcome;
-  Table table{
-      "",
-      "Two hexapods at 10 m/s closing speed: how many pass through each other",
-      {{"model", "safety factor", "runs", "changed sides", "undetected", "most energy / start"}}};
-  Plot plot{"Fig. 4-10",
-            "Bodies that pass through each other",
-            "safety factor on the step of (4.29)",
-            "changed sides / runs",
-            false,
-            false,
-            {}};
-  for (const char* model : {"spheres", "surface"}) {
-    Series series;
-    series.label = model;
-    for (const Record& r : select(records, {{"model", model}})) {
-      const double share = r["crossed"].get<double>() / r["runs"].get<double>();
-      series.x.push_back(r["safety"]);
-      series.y.push_back(share);
-      table.rows.push_back({model, fmt::format("{:g}", r["safety"].get<double>()),
-                            std::to_string(r["runs"].get<int>()),
-                            std::to_string(r["crossed"].get<int>()),
-                            std::to_string(r["undetected"].get<int>()),
-                            fmt::format("{:.3f}", r["energy_ratio_max"].get<double>())});
-      if (r["safety"].get<double>() <= 0.5)
-        outcome.verdicts.push_back(at_most(
-            fmt::format("pass-throughs at the derived step, {}", model), r["crossed"], 0.0));
-    }
-    plot.series.push_back(series);
-  }
-  outcome.plots.push_back(plot);
-  outcome.tables.push_back(table);
-  return outcome;
-}
-
-std::vector<Json> sweep_tunnel(Effort effort) {
-  std::vector<Json> points;
-  for (const char* model : {"spheres", "surface"})
-    for (const double safety : {0.5, 1.0, 2.0, 4.0, 8.0, 12.0}) {
-      // Beyond the bound bodies overlap deeply and every step has thousands of contacts.
-      if (effort == Effort::quick && safety > 2.0) continue;
-      points.push_back({{"method", "C"},
-                        {"model", model},
-                        {"safety", safety},
-                        {"runs", effort == Effort::quick ? 4 : 30}});
-    }
-  return points;
 }
 
 }  // namespace
@@ -448,19 +342,6 @@ Experiment top() {
           },
           run_top,
           conclude_top};
-}
-
-Experiment tunnel() {
-  return {"tunnelling",
-          "Fig. 4-10",
-          "Do fast bodies pass through each other?",
-          "Two hexapods meet at 10 m/s with random orientations, the step sigma times the bound of "
-          "(4.29). "
-          "The bound is tight: at the derived step (sigma = 0.5) none pass.",
-          false,
-          sweep_tunnel,
-          run_tunnel,
-          conclude_tunnel};
 }
 
 }  // namespace gotai::experiments

@@ -2,14 +2,26 @@
 // bits.
 #include <fmt/format.h>
 
-#include <cmath>
+#include <thread>
 
 #include "gotai/core/parallel.h"
 #include "thesis/catalogue.h"
 #include "thesis/drops.h"
+#include "thesis/level_error.h"
 
 namespace gotai::experiments {
 namespace {
+
+constexpr int kSeeds = 8;  // of the error
+
+/// 1, 2, 4, ..: more than there are processors must not change a bit, either.
+std::vector<int> thread_counts(Effort effort) {
+  const int processors = static_cast<int>(std::thread::hardware_concurrency());
+  std::vector<int> counts{1, 2, 4};
+  if (effort == Effort::full)
+    for (int n = 8; n <= processors; n *= 2) counts.push_back(n);
+  return counts;
+}
 
 std::vector<Json> sweep(Effort effort) {
   std::vector<Json> points;
@@ -18,24 +30,40 @@ std::vector<Json> sweep(Effort effort) {
     for (const char* scene : {"blocks", "rocks"})
       for (const char* method : {"C", "A"}) {
         if (std::string(model) == "surface" && std::string(method) == "A") continue;
-        for (const int threads : {1, 2})
+        for (const int threads : thread_counts(effort))
           points.push_back({{"method", method},
                             {"model", model},
                             {"level", 4},
                             {"scene", scene},
+                            {"measure", "speed"},
                             {"threads", threads},
                             {"duration", duration}});
       }
+  add_level_error_points(points, kSeeds, {{"scene", "rocks"}});
   return points;
 }
 
+Setup base_setup() {
+  Setup setup;
+  setup.dt = 0.01;
+  setup.restitution = 0.3;
+  setup.friction = 0.3;
+  setup.exact = false;
+  return setup;
+}
+
+LevelErrorScene error_scene(const std::string& scene) {
+  const auto make = [scene](const Setup& setup, std::uint64_t seed) {
+    World world = world_with_floor(setup);
+    add_crowd(world, scene, setup, seed);
+    return world;
+  };
+  return {"parallel " + scene, make, base_setup(), 1.0, 0.7};
+}
+
 Json run(const Json& point, const std::string& /*folder*/) {
-  Setup defaults;
-  defaults.dt = 0.01;
-  defaults.restitution = 0.3;
-  defaults.friction = 0.3;
-  defaults.exact = false;
-  const Setup setup = setup_of(point, defaults);
+  if (point["measure"] == "error") return run_level_error(point, error_scene(point["scene"]));
+  const Setup setup = setup_of(point, base_setup());
   const ThreadLimit limit(point["threads"].get<int>());
   World world = world_with_floor(setup);
   add_crowd(world, point["scene"], setup);
@@ -54,13 +82,11 @@ Outcome conclude(const std::vector<Record>& records, Effort /*effort*/) {
   Table table{"",
               "Steps per second and speed-up",
               {{"scene", "method", "model", "threads", "steps/s", "speed-up", "real time factor"}}};
-  for (const Record& r : records) {
-    Json match = r;
-    for (const char* key : {"steps", "contacts_mean", "contacts_max", "overlap_max", "energy_gain",
-                            "steps_per_s", "real_time_factor", "state_hash"})
-      match.erase(key);
-    match["threads"] = 1;
-    const Record& one = pick(records, match);
+  const std::vector<Record> runs = select(records, {{"measure", "speed"}});
+  for (const Record& r : runs) {
+    const Record& one = pick(
+        runs,
+        {{"scene", r["scene"]}, {"method", r["method"]}, {"model", r["model"]}, {"threads", 1}});
     const double speed_up = r["steps_per_s"].get<double>() / one["steps_per_s"].get<double>();
     if (r["threads"] != 1)
       outcome.verdicts.push_back(
@@ -74,6 +100,7 @@ Outcome conclude(const std::vector<Record>& records, Effort /*effort*/) {
          fmt::format("{:.2f}", r["real_time_factor"].get<double>())});
   }
   outcome.tables.push_back(table);
+  judge_level_error(outcome, select(records, {{"measure", "error"}}), "rocks");
   for (const char* scene : {"blocks", "rocks"}) {
     Plot plot{std::string(scene) == "blocks" ? "Fig. 6-28" : "Fig. 6-29",
               fmt::format("Steps per second, {}", scene),
@@ -89,7 +116,7 @@ Outcome conclude(const std::vector<Record>& records, Effort /*effort*/) {
       series.label = label_of(line);
       Json match = line;
       match["scene"] = scene;
-      for (const Record& r : select(records, match)) {
+      for (const Record& r : select(runs, match)) {
         series.x.push_back(r["threads"]);
         series.y.push_back(r["steps_per_s"]);
       }

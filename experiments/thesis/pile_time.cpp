@@ -3,9 +3,34 @@
 
 #include "thesis/catalogue.h"
 #include "thesis/drops.h"
+#include "thesis/level_error.h"
 
 namespace gotai::experiments {
 namespace {
+
+constexpr double kExtent = 2.0;    // L of the hexapod [m]
+constexpr double kDuration = 3.0;  // of a timed run [s]
+constexpr int kSeeds = 8;          // of the error
+
+Setup base_setup(double friction) {
+  Setup setup;
+  setup.restitution = 0.3;
+  setup.friction = friction;
+  setup.dt = 0.01;
+  setup.exact = false;
+  return setup;
+}
+
+Drop ten_hexapods(const Setup& setup, std::uint64_t seed) {
+  geometry::GeneratorOptions hexapod;
+  hexapod.shape = "hexapod";
+  Drop drop;
+  drop.shape = prepare(hexapod, kFinestPrepared, setup);
+  drop.extent = kExtent;
+  drop.count = 10;
+  drop.seed = seed;
+  return drop;
+}
 
 std::vector<Json> sweep(Effort effort) {
   std::vector<Json> points;
@@ -19,24 +44,26 @@ std::vector<Json> sweep(Effort effort) {
                             {"model", model},
                             {"level", level},
                             {"friction", friction},
+                            {"measure", "time"},
                             {"repeats", effort == Effort::quick ? 3 : 5}});
     }
+  add_level_error_points(points, kSeeds);
   return points;
 }
 
+LevelErrorScene error_scene() {
+  const auto make = [](const Setup& setup, std::uint64_t seed) {
+    World world = world_with_floor(setup);
+    add_drop(world, ten_hexapods(setup, seed));
+    return world;
+  };
+  return {"pile-time", make, base_setup(0.3), kExtent, 1.0};
+}
+
 Json run(const Json& point, const std::string& /*folder*/) {
-  Setup defaults;
-  defaults.restitution = 0.3;
-  defaults.friction = point["friction"];
-  defaults.dt = 0.01;
-  defaults.exact = false;
-  const Setup setup = setup_of(point, defaults);
-  Drop drop;
-  geometry::GeneratorOptions hexapod;
-  hexapod.shape = "hexapod";
-  drop.shape = prepare(hexapod, kFinestPrepared, setup);
-  drop.extent = 2.0;
-  drop.count = 10;
+  if (point["measure"] == "error") return run_level_error(point, error_scene());
+  const Setup setup = setup_of(point, base_setup(point["friction"]));
+  const Drop drop = ten_hexapods(setup, 1);
   Json record;
   time_runs(
       [&] {
@@ -44,13 +71,13 @@ Json run(const Json& point, const std::string& /*folder*/) {
         add_drop(world, drop);
         return world;
       },
-      3.0, point["repeats"], record);
+      kDuration, point["repeats"], record);
   return record;
 }
 
 Outcome conclude(const std::vector<Record>& records, Effort /*effort*/) {
   Outcome outcome;
-  const std::vector<Record> shown = select(records, {{"friction", 0.3}});
+  const std::vector<Record> shown = select(records, {{"measure", "time"}, {"friction", 0.3}});
   for (const Record& c : select(shown, {{"method", "C"}, {"model", "spheres"}})) {
     const Record& a = pick(shown, {{"method", "A"}, {"model", "spheres"}, {"level", c["level"]}});
     const double ratio = a["impulse_least_ms"].get<double>() / c["impulse_least_ms"].get<double>();
@@ -58,15 +85,10 @@ Outcome conclude(const std::vector<Record>& records, Effort /*effort*/) {
         at_most(fmt::format("impulse time of A / C at level {} (far below)", c["level"].get<int>()),
                 ratio, c["level"].get<int>() <= 3 ? 0.7 : 0.3));
   }
-  outcome.plots.push_back(by_level(shown, "total_ms", "", "Ten hexapods: computing time, mu = 0.3",
-                                   "time for 3 s [ms]", true));
-  outcome.plots.push_back(by_level(shown, "impulse_ms", "",
-                                   "Ten hexapods: time for the impulses, mu = 0.3",
-                                   "time for 3 s [ms]", true));
+  judge_level_error(outcome, select(records, {{"measure", "error"}}), "ten hexapods");
+  show_times(outcome, shown, "Ten hexapods, mu = 0.3", kDuration, "Table 6-5", "Table 6-5");
   outcome.tables.push_back(
-      level_table(shown, "total_ms", "Table 6-5", "Computing time of ten hexapods [ms], mu = 0.3"));
-  outcome.tables.push_back(level_table(shown, "detection_ms", "Table 6-5", "Detection alone [ms]"));
-  outcome.tables.push_back(level_table(shown, "impulse_ms", "Table 6-5", "Impulses alone [ms]"));
+      level_table(shown, "detection_ms", "Table 6-5", "Ten hexapods, mu = 0.3: detection [ms]"));
   outcome.tables.push_back(level_table(shown, "contacts_mean", "", "Mean contacts"));
   return outcome;
 }

@@ -8,12 +8,14 @@
 #include "gotai/core/stopwatch.h"
 #include "thesis/catalogue.h"
 #include "thesis/drops.h"
+#include "thesis/level_error.h"
 
 namespace gotai::experiments {
 namespace {
 
 constexpr int kLevel = 5;
 
+constexpr int kSeeds = 8;         // of the error
 constexpr int kCoarsestRock = 2;  // halvings: 320 triangles
 
 std::vector<Json> sweep(Effort effort) {
@@ -31,7 +33,9 @@ std::vector<Json> sweep(Effort effort) {
                           {"triangles", 20 << (2 * n)},
                           {"refinement", refinement},
                           {"halvings", n},
+                          {"measure", "time"},
                           {"repeats", effort == Effort::quick ? 5 : 15}});
+  add_level_error_points(points, kSeeds, {{"triangles", 20 << (2 * kCoarsestRock)}});
   return points;
 }
 
@@ -70,12 +74,14 @@ std::shared_ptr<const voxel::Shape> rock(int halvings, bool same_solid, const Se
   return prepare("rock", std::move(mesh), kFinestPrepared, setup);
 }
 
-World world_of(const Setup& setup, std::shared_ptr<const voxel::Shape> shape) {
+World world_of(const Setup& setup, std::shared_ptr<const voxel::Shape> shape,
+               std::uint64_t seed = 1) {
   World world = world_with_floor(setup);
   Drop drop;
   drop.extent = shape->pyramid.grid.voxel_edge(1);
   drop.shape = std::move(shape);
   drop.count = 5;
+  drop.seed = seed;
   add_drop(world, drop);
   return world;
 }
@@ -109,14 +115,27 @@ double replay(World& world, const std::vector<Snapshot>& states, std::uint64_t& 
   return 1e3 * seconds;
 }
 
+Setup base_setup() {
+  Setup setup;
+  setup.dt = 1.0 / 200.0;
+  setup.restitution = 0.3;
+  setup.friction = 0.3;
+  setup.exact = false;
+  return setup;
+}
+
+LevelErrorScene error_scene() {
+  const auto make = [](const Setup& setup, std::uint64_t seed) {
+    return world_of(setup, rock(kCoarsestRock, true, setup), seed);
+  };
+  const double extent = rock(kCoarsestRock, true, {})->pyramid.grid.voxel_edge(1);
+  return {"polygons", make, base_setup(), extent, 1.0};
+}
+
 Json run(const Json& point, const std::string& /*folder*/) {
+  if (point["measure"] == "error") return run_level_error(point, error_scene());
   const ThreadLimit one_thread(1);
-  Setup defaults;
-  defaults.dt = 1.0 / 200.0;
-  defaults.restitution = 0.3;
-  defaults.friction = 0.3;
-  defaults.exact = false;
-  const Setup setup = setup_of(point, defaults);
+  const Setup setup = setup_of(point, base_setup());
   const bool same_solid = point["refinement"] == "same solid";
   const std::vector<Snapshot> states = recorded_run(setup, same_solid);
   Json record;
@@ -142,6 +161,7 @@ Json run(const Json& point, const std::string& /*folder*/) {
 
 Outcome conclude(const std::vector<Record>& records, Effort /*effort*/) {
   Outcome outcome;
+  const std::vector<Record> timed = select(records, {{"measure", "time"}});
   Plot plot{"Fig. 6-26",
             "Detection time by number of polygons",
             "triangles per body",
@@ -154,7 +174,7 @@ Outcome conclude(const std::vector<Record>& records, Effort /*effort*/) {
       Series series;
       series.label = fmt::format("{}, {}", model, refinement);
       series.dashed = std::string(refinement) == "smoother";
-      for (const Record& r : select(records, {{"model", model}, {"refinement", refinement}})) {
+      for (const Record& r : select(timed, {{"model", model}, {"refinement", refinement}})) {
         series.x.push_back(r["triangles"]);
         series.y.push_back(r["ratio"]);
       }
@@ -166,11 +186,12 @@ Outcome conclude(const std::vector<Record>& records, Effort /*effort*/) {
       plot.series.push_back(series);
     }
   outcome.plots.push_back(plot);
+  judge_level_error(outcome, select(records, {{"measure", "error"}}), "five rocks");
   Table table{"",
               "Detection on one recorded trajectory (processor time)",
               {{"model", "refinement", "triangles", "preparation [s]", "detection [ms]",
                 "time / time of 320", "mean contacts"}}};
-  for (const Record& r : records)
+  for (const Record& r : timed)
     table.rows.push_back({r["model"], r["refinement"], std::to_string(r["triangles"].get<int>()),
                           fmt::format("{:.2f}", r["prepare_s"].get<double>()),
                           fmt::format("{:.2f}", r["detection_ms"].get<double>()),

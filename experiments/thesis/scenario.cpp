@@ -103,6 +103,27 @@ BodyId add_unit_body(World& world, ShapeId shape, const Vec3& x_W, const Quat& q
   return world.add_body(body);
 }
 
+std::vector<double> scheme_heights(double z0, double z_touch, double v0, double e, double dt,
+                                   double duration) {
+  std::vector<double> heights;
+  double z = z0;
+  double v = v0;
+  const long steps = std::lround(duration / dt);
+  for (long k = 0; k < steps; ++k) {
+    const double gap = z - z_touch;
+    const double free = v - kGravity * dt;
+    if (free * dt >= -gap)
+      v = free;
+    else if (gap > 0.0 && v >= -2.0 * kGravity * dt)
+      v = -gap / dt;
+    else
+      v = -e * std::min(v, 0.0);
+    z += v * dt;
+    heights.push_back(z);
+  }
+  return heights;
+}
+
 double bouncing_height(double z0, double z_touch, double e, double t) {
   double drop = z0 - z_touch;
   double speed = std::sqrt(2.0 * kGravity * drop);
@@ -194,6 +215,18 @@ Table level_table(const std::vector<Record>& records, const std::string& metric,
   return table;
 }
 
+void show_times(Outcome& outcome, const std::vector<Record>& records, const std::string& what,
+                double duration, const std::string& total_table, const std::string& impulse_table) {
+  const std::string axis = fmt::format("time for {:g} s [ms]", duration);
+  outcome.plots.push_back(by_level(records, "total_ms", "", what + ": computing time", axis, true));
+  outcome.plots.push_back(
+      by_level(records, "impulse_ms", "", what + ": time for the impulses", axis, true));
+  outcome.tables.push_back(
+      level_table(records, "total_ms", total_table, what + ": computing time [ms]"));
+  outcome.tables.push_back(
+      level_table(records, "impulse_ms", impulse_table, what + ": time for the impulses [ms]"));
+}
+
 double rms(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
@@ -232,6 +265,7 @@ void time_runs(const std::function<World()>& make_world, double duration, int re
   std::vector<double> total;
   std::vector<double> detection;
   std::vector<double> impulses;
+  std::vector<double> integration;
   for (int k = 0; k < repeats; ++k) {
     World world = make_world();
     Totals totals(world);
@@ -239,11 +273,13 @@ void time_runs(const std::function<World()>& make_world, double duration, int re
     total.push_back(1e3 * totals.total_s);
     detection.push_back(1e3 * totals.collision_s);
     impulses.push_back(1e3 * totals.impulse_s);
+    integration.push_back(1e3 * totals.integration_s);
     totals.write(record);
   }
   record["total_ms"] = median(total);
   record["detection_ms"] = median(detection);
   record["impulse_ms"] = median(impulses);
+  record["integration_ms"] = median(integration);
   record["impulse_least_ms"] = *std::min_element(impulses.begin(), impulses.end());
 }
 

@@ -60,6 +60,13 @@ BodyId add_unit_body(World& world, ShapeId shape, const Vec3& x_W,
                      const Quat& q_WB = Quat::Identity(), const Vec3& v_W = Vec3::Zero(),
                      const Vec3& w_W = Vec3::Zero());
 
+/// Heights after each step of what the scheme itself makes of the fall of a point that bounces
+/// with e: no shape, no level, no solver. The step in which the floor would be passed turns the
+/// speed before the step (spec: row target). An error beside it is the collision model's alone.
+/// @param v0  upward velocity at the start [m/s]
+std::vector<double> scheme_heights(double z0, double z_touch, double v0, double e, double dt,
+                                   double duration);
+
 /// Height of a ball that is dropped from z0 on a floor where it touches at z_touch, bouncing with
 /// e, at time t: the analytic solution of the free-fall experiments [m].
 double bouncing_height(double z0, double z_touch, double e, double t);
@@ -78,6 +85,11 @@ Plot by_level(const std::vector<Record>& records, const std::string& metric, std
 /// A metric as a table: one row per method and model, one column per level.
 Table level_table(const std::vector<Record>& records, const std::string& metric, std::string number,
                   std::string title);
+
+/// Adds a plot and a table of "total_ms" and of "impulse_ms" by level, which time_runs writes.
+/// @param what  runs, and for how long: "Falling sphere", 3 [s]
+void show_times(Outcome& outcome, const std::vector<Record>& records, const std::string& what,
+                double duration, const std::string& total_table, const std::string& impulse_table);
 
 /// Root mean square of the differences.
 double rms(const std::vector<double>& a, const std::vector<double>& b);
@@ -104,7 +116,8 @@ struct Totals {
 };
 
 /// Runs a scene several times on one thread and writes the median times of a run (total_ms,
-/// detection_ms, impulse_ms), the least impulse time (impulse_least_ms) and the totals of the last.
+/// detection_ms, impulse_ms, integration_ms), the least impulse time (impulse_least_ms) and the
+/// totals of the last.
 /// @param duration  of a run [s]
 void time_runs(const std::function<World()>& make_world, double duration, int repeats,
                Json& record);

@@ -25,7 +25,7 @@ Json run(const Json& point, const std::string& /*folder*/) {
   World world = world_with_floor(setup);
   geometry::GeneratorOptions cube;
   cube.shape = "cube";
-  const std::shared_ptr<const voxel::Shape> prepared = prepare(cube, setup.level, setup);
+  const std::shared_ptr<const voxel::Shape> prepared = prepare(cube, kFinestPrepared, setup);
   const ShapeId shape = world.add_shape(prepared);
   const double touch = touching_height(*prepared, Quat::Identity(), setup);
   const BodyId body = add_unit_body(world, shape, Vec3(0.0, 0.0, touch - 1e-9), Quat::Identity(),
