@@ -141,6 +141,8 @@ nlohmann::ordered_json to_json(const Outcome& outcome) {
           {"energy_final", s.energy.final},
           {"energy_max_gain", s.energy.max_gain},
           {"residual_max", s.residual_max},
+          {"plastic_islands", s.plastic_islands},
+          {"substeps_max", s.substeps_max},
           {"distance", outcome.distance ? nlohmann::ordered_json(*outcome.distance)
                                         : nlohmann::ordered_json(nullptr)},
           {"failure", outcome.failure}};

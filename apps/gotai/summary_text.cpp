@@ -39,6 +39,8 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
        {{"initial", s.energy.initial}, {"final", s.energy.final}, {"max_gain", s.energy.max_gain}}},
       {"momentum_error", s.momentum_error},
       {"residual_max", s.residual_max},
+      {"plastic_islands", s.plastic_islands},
+      {"substeps_max", s.substeps_max},
       {"escaped", s.escaped},
       {"state_hash", s.state_hash},
   };
@@ -76,7 +78,12 @@ std::string to_table(const RunSummary& s) {
   report.row("energy", fmt::format("{:.6g} J to {:.6g} J, largest gain {:.2g} J", s.energy.initial,
                                    s.energy.final, s.energy.max_gain));
   report.row("momentum error", fmt::format("{:.2g} of the largest momentum", s.momentum_error));
-  report.row("solver residual", fmt::format("{:.2g} m/s max", s.residual_max));
+  report.row(
+      "solver",
+      fmt::format("residual {:.2g} m/s max, {} sub-steps per step at most, {} islands without "
+                  "restitution",
+                  s.residual_max, format_count(s.substeps_max),
+                  s.plastic_islands == 0 ? "no" : format_count(s.plastic_islands)));
   report.row("escaped", s.escaped == 0 ? "none" : format_count(s.escaped) + " bodies");
   report.row("state hash", s.state_hash);
   return report.text();

@@ -95,6 +95,9 @@ TEST(Settings, ValidateNamesTheSetting) {
   EXPECT_NO_THROW(validate(settings));
   settings.collision.level = 0;
   EXPECT_THAT(message_of([&] { validate(settings); }), HasSubstr("collision.level = 0"));
+  settings.collision.level = 6;
+  settings.impulse.penetration = 1e-9;
+  EXPECT_THAT(message_of([&] { validate(settings); }), HasSubstr("impulse.penetration = 1e-09"));
 }
 
 TEST(ContactSet, GapsFollowTheAnchors) {

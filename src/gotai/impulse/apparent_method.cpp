@@ -6,6 +6,7 @@
 #include "gotai/impulse/contact_kinematics.h"
 #include "gotai/impulse/island_solver.h"
 #include "gotai/impulse/row_solver.h"
+#include "gotai/impulse/step_plans.h"
 
 namespace gotai::impulse {
 namespace {
@@ -29,10 +30,7 @@ void solve_pairs(const ConeProblem& problem, const model::ImpulseSettings& setti
 ApparentMethod::ApparentMethod(const model::Settings& settings) : settings_(settings) {}
 
 model::StepPlan ApparentMethod::plan(const model::BodyState& /*bodies*/, double dt) const {
-  model::StepPlan plan;
-  plan.dt = dt;
-  plan.positions_first = settings_.time.integrator == model::Integrator::explicit_euler;
-  return plan;
+  return whole_step(settings_, dt);
 }
 
 void ApparentMethod::prepare(const model::BodyState& bodies, const model::ContactSet& contacts,

@@ -17,20 +17,6 @@ void ConeProblem::clear() {
   patch.clear();
 }
 
-Vec3 ConeProblem::velocity(std::size_t i, const Eigen::VectorXd& y) const {
-  Vec3 c = bias[i];
-  for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
-    c.noalias() += couplings[k].J * y.segment<6>(Eigen::Index{6} * couplings[k].block);
-  }
-  return c;
-}
-
-void ConeProblem::add_impulse(std::size_t i, const Vec3& p, Eigen::VectorXd& y) const {
-  for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
-    y.segment<6>(Eigen::Index{6} * couplings[k].block).noalias() += couplings[k].J.transpose() * p;
-  }
-}
-
 double ConeProblem::inertness(std::size_t i) const {
   double sum = 0.0;
   for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
@@ -58,7 +44,7 @@ Vec3 project_on_friction(const Vec3& z, double friction) {
   const double normal = std::max(0.0, z.x());
   if (std::isinf(friction)) return {normal, z.y(), z.z()};
   const double limit = friction * normal;
-  const double tangential = std::hypot(z.y(), z.z());
+  const double tangential = std::sqrt(z.y() * z.y() + z.z() * z.z());
   if (tangential <= limit) return {normal, z.y(), z.z()};
   const double scale = limit / tangential;
   return {normal, scale * z.y(), scale * z.z()};

@@ -52,6 +52,20 @@ struct ConeProblem {
   double inertness(std::size_t i) const;
 };
 
+inline Vec3 ConeProblem::velocity(std::size_t i, const Eigen::VectorXd& y) const {
+  Vec3 c = bias[i];
+  for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
+    c.noalias() += couplings[k].J * y.segment<6>(Eigen::Index{6} * couplings[k].block);
+  }
+  return c;
+}
+
+inline void ConeProblem::add_impulse(std::size_t i, const Vec3& p, Eigen::VectorXd& y) const {
+  for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
+    y.segment<6>(Eigen::Index{6} * couplings[k].block).noalias() += couplings[k].J.transpose() * p;
+  }
+}
+
 /// Sets R_i = ridge * trace(A_N)/n * (mean area / area_i) with A_N the normal rows (errata 4, 23).
 /// @param area  surface that each contact stands for [m^2], > 0
 void set_compliance(ConeProblem& problem, const std::vector<double>& area, double ridge);

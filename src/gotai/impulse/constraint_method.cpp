@@ -1,34 +1,19 @@
 #include "gotai/impulse/constraint_method.h"
 
-#include <algorithm>
-
+#include "gotai/impulse/step_plans.h"
 #include "gotai/impulse/warm_start.h"
 
 namespace gotai::impulse {
-namespace {
-
-// How far contacts must be seen before they touch [m]. Spheres: the thesis lets them touch first.
-double margin(const model::Settings& settings, const model::BodyState& bodies, double dt) {
-  if (settings.collision.model == model::CollisionModel::spheres) return 0.0;
-  double fastest = 0.0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (bodies.kind[i] == model::BodyKind::fixed) continue;
-    fastest =
-        std::max(fastest, bodies.v_W[i].norm() + bodies.bounding_radius[i] * bodies.w_W[i].norm());
-  }
-  return 2.0 * dt * (fastest + settings.gravity.norm() * dt);
-}
-
-}  // namespace
 
 ConstraintMethod::ConstraintMethod(const model::Settings& settings)
     : settings_(settings), islands_(settings) {}
 
 model::StepPlan ConstraintMethod::plan(const model::BodyState& bodies, double dt) const {
-  model::StepPlan plan;
-  plan.dt = dt;
-  plan.contact_margin = margin(settings_, bodies, dt);
-  plan.positions_first = settings_.time.integrator == model::Integrator::explicit_euler;
+  model::StepPlan plan = whole_step(settings_, dt);
+  // The thesis lets spheres touch first.
+  if (settings_.collision.model == model::CollisionModel::surface) {
+    plan.contact_margin = approach_margin(bodies, settings_.gravity, dt);
+  }
   return plan;
 }
 

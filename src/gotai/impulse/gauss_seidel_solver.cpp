@@ -7,8 +7,15 @@
 namespace gotai::impulse {
 namespace {
 
-constexpr int first_sweeps = 30;             // contact sweeps of the first round
-constexpr double worthwhile_progress = 0.8;  // of a patch sweep: residual after / before
+constexpr int sweeps_per_round = 40;
+constexpr double worthwhile_progress = 0.8;  // of a round: residual after / before
+constexpr double solved = 0.5;               // residual of contacts that need no sweep / limit
+
+void measure(const ConeProblem& problem, double limit, ConeSolution& solution) {
+  solution.y = velocities_of(problem, solution.p);  // no drift from the updates
+  solution.residual = natural_map_residual(problem, solution.p, solution.y);
+  solution.converged = solution.residual <= limit;
+}
 
 }  // namespace
 
@@ -20,74 +27,47 @@ void GaussSeidelSolver::solve(const ConeProblem& problem, const std::vector<Vec3
     solution.p.assign(problem.size(), Vec3::Zero());
   }
   cut(problem);
-  prepare_contacts(problem);
-  solution.iterations = 0;
-  int sweeps = first_sweeps;
-  for (bool first_round = true;; first_round = false, sweeps *= 2) {
-    const int last = std::min(max_sweeps, solution.iterations + sweeps);
-    sweep_until(problem, limit, last, solution);
-    // Patch sweeps go on as long as they pay.
-    double before = std::numeric_limits<double>::infinity();
-    for (bool all = first_round;; all = false) {
-      sweep_patches(problem, limit, all, solution);
-      ++solution.iterations;
-      solution.y = velocities_of(problem, solution.p);  // no drift from the updates
-      solution.residual = natural_map_residual(problem, solution.p, solution.y);
-      solution.converged = solution.residual <= limit;
-      if (solution.converged || solution.iterations >= max_sweeps) return;
-      if (solution.residual > worthwhile_progress * before) break;
-      before = solution.residual;
-    }
-  }
-}
-
-void GaussSeidelSolver::prepare_contacts(const ConeProblem& problem) {
-  normal_step_.resize(problem.size());
-  tangential_step_.resize(problem.size());
-  for (std::size_t i = 0; i < problem.size(); ++i) {
-    Mat3 A = Mat3::Zero();
-    for (std::uint32_t k = problem.first[i]; k < problem.first[i + 1]; ++k) {
-      A.noalias() += problem.couplings[k].J * problem.couplings[k].J.transpose();
-    }
-    normal_step_[i] = 1.0 / A(0, 0);
-    const double bound = std::max(A(1, 1), A(2, 2)) + std::abs(A(1, 2));
-    tangential_step_[i] = problem.friction[i] > 0.0 ? 1.0 / bound : 0.0;
-  }
-}
-
-void GaussSeidelSolver::sweep_contacts(const ConeProblem& problem, ConeSolution& solution) const {
-  for (std::size_t i = 0; i < problem.size(); ++i) {
-    const double mu = problem.friction[i];
-    const Vec3 p = solution.p[i];
-    const Vec3 c = problem.velocity(i, solution.y);
-    const double normal = std::max(0.0, p.x() - normal_step_[i] * c.x());
-    if (normal == 0.0 && p.isZero(0.0) && std::isfinite(mu)) continue;
-    Vec3 next(normal, 0.0, 0.0);
-    if (mu > 0.0) {
-      // The tangents see the new normal impulse.
-      Vec3 pushed = c;
-      for (std::uint32_t k = problem.first[i]; k < problem.first[i + 1]; ++k) {
-        const Jacobian& J = problem.couplings[k].J;
-        pushed.tail<2>().noalias() += (normal - p.x()) * (J.bottomRows<2>() * J.row(0).transpose());
-      }
-      const Vec2 trial = p.tail<2>() - tangential_step_[i] * pushed.tail<2>();
-      next = project_on_friction({normal, trial.x(), trial.y()}, mu);
-    }
-    problem.add_impulse(i, next - p, solution.y);
-    solution.p[i] = next;
-  }
-}
-
-void GaussSeidelSolver::sweep_until(const ConeProblem& problem, double limit, int last,
-                                    ConeSolution& solution) const {
-  constexpr int sweeps_per_check = 5;
+  sweeps_.prepare(problem);
   solution.y = velocities_of(problem, solution.p);
-  while (solution.iterations < last) {
-    for (int k = 0; k < sweeps_per_check && solution.iterations < last; ++k) {
-      sweep_contacts(problem, solution);
-      ++solution.iterations;
+  int patch_sweeps = 0;
+  const auto sweeps_left = [&] { return max_sweeps - patch_sweeps - sweeps_.sweeps_done(); };
+
+  sweeps_.run(problem, all_contacts(problem), std::min(sweeps_per_round, max_sweeps), limit,
+              solution);
+  measure(problem, limit, solution);
+  for (bool all = true; all || !solution.converged; all = false) {
+    // Contact sweeps, then patch sweeps, each as long as they pay.
+    while (!solution.converged && sweeps_left() > 0) {
+      const double before = solution.residual;
+      sweep_unsolved(problem, sweeps_left(), limit, solution);
+      measure(problem, limit, solution);
+      if (solution.residual > worthwhile_progress * before) break;
     }
-    if (natural_map_residual(problem, solution.p, solution.y) <= limit) return;
+    for (bool first = true; sweeps_left() > 0; first = false) {
+      const double before = solution.residual;
+      sweep_patches(problem, limit, all && first, solution);
+      ++patch_sweeps;
+      measure(problem, limit, solution);
+      if (solution.converged || solution.residual > worthwhile_progress * before) break;
+    }
+    if (sweeps_left() <= 0) break;
+  }
+  solution.iterations = patch_sweeps + sweeps_.sweeps_done();
+}
+
+// Where most is unsolved, all contacts: parts pay when they are small.
+void GaussSeidelSolver::sweep_unsolved(const ConeProblem& problem, int sweeps, double limit,
+                                       ConeSolution& solution) {
+  const std::vector<ContactSubset> parts = unsolved_parts(problem, solution, solved * limit);
+  std::size_t contacts = 0;
+  for (const ContactSubset& part : parts) contacts += part.contacts.size();
+  sweeps = std::min(sweeps, sweeps_per_round);
+  if (2 * contacts > problem.size()) {
+    sweeps_.run(problem, all_contacts(problem), sweeps, limit, solution);
+  } else {
+    for (const ContactSubset& part : parts) {
+      sweeps_.run(problem, part, 2 * sweeps, solved * limit, solution);
+    }
   }
 }
 

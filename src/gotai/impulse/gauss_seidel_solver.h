@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gotai/impulse/cone_problem.h"
+#include "gotai/impulse/contact_sweeps.h"
 #include "gotai/impulse/newton_solver.h"
 
 namespace gotai::impulse {
@@ -34,18 +35,14 @@ class GaussSeidelSolver {
   };
 
   void cut(const ConeProblem& problem);
-  void prepare_contacts(const ConeProblem& problem);
-  void sweep_contacts(const ConeProblem& problem, ConeSolution& solution) const;
-  void sweep_until(const ConeProblem& problem, double limit, int last,
-                   ConeSolution& solution) const;
+  void sweep_unsolved(const ConeProblem& problem, int sweeps, double limit, ConeSolution& solution);
   void sweep_patches(const ConeProblem& problem, double limit, bool all, ConeSolution& solution);
   double residual(const ConeProblem& problem, const Patch& patch,
                   const ConeSolution& solution) const;
   void update(const ConeProblem& problem, Patch& patch, double limit, ConeSolution& solution);
 
   std::vector<Patch> patches_;
-  std::vector<double> normal_step_;      // per contact: 1 / A_NN [kg]
-  std::vector<double> tangential_step_;  // per contact: 1 / (bound of the eigenvalues of A_TT) [kg]
+  ContactSweeps sweeps_;
   std::vector<Vec3> guess_;
   NewtonSolver newton_;
 };

@@ -1,6 +1,7 @@
 #include "gotai/impulse/impulse_method.h"
 
 #include "gotai/impulse/contact_kinematics.h"
+#include "gotai/impulse/step_plans.h"
 
 namespace gotai::impulse {
 
@@ -8,10 +9,7 @@ SuperposedImpulses::SuperposedImpulses(const model::Settings& settings, bool ave
     : settings_(settings), averaged_(averaged) {}
 
 model::StepPlan SuperposedImpulses::plan(const model::BodyState& /*bodies*/, double dt) const {
-  model::StepPlan plan;
-  plan.dt = dt;
-  plan.positions_first = settings_.time.integrator == model::Integrator::explicit_euler;
-  return plan;
+  return whole_step(settings_, dt);
 }
 
 void SuperposedImpulses::prepare(const model::BodyState& bodies, const model::ContactSet& contacts,

@@ -67,6 +67,7 @@ void IslandSolver::solve(const model::BodyState& bodies, const ContactTargets& t
       }
     }
     report_.rows += static_cast<std::uint32_t>(row);
+    report_.plastic_islands += work.plastic ? 1 : 0;
     report_.residual = std::max(report_.residual, work.solution.residual);
     report_.iterations =
         std::max(report_.iterations, static_cast<std::uint32_t>(work.solution.iterations));
@@ -88,6 +89,7 @@ void IslandSolver::solve_island(const model::BodyState& bodies, const Island& is
     }
   }
   solve_by_settings(work.problem, warm ? &work.guess : nullptr, settings_.impulse, work.solution);
+  work.plastic = false;
   const double unsolved = unsolved_residual * velocity_scale(work.problem);
   if (work.solution.residual > unsolved && uses_exact_solver(work.problem, settings_.impulse)) {
     solve_plastic(bodies, island, targets, gap, dt, work);
@@ -104,7 +106,8 @@ void IslandSolver::solve_plastic(const model::BodyState& bodies, const Island& i
            settings_.impulse.ridge, work.problem, work.frame);
   ConeSolution plastic;
   solve_by_settings(work.problem, nullptr, settings_.impulse, plastic);
-  if (plastic.residual < work.solution.residual) work.solution = std::move(plastic);
+  work.plastic = plastic.residual < work.solution.residual;
+  if (work.plastic) work.solution = std::move(plastic);
 }
 
 }  // namespace gotai::impulse

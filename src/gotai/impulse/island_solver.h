@@ -47,6 +47,7 @@ class IslandSolver {
     std::vector<Mat3> frame;  // contact frames, W
     std::vector<Vec3> guess;  // contact frames [N s]
     ConeSolution solution;
+    bool plastic = false;  // solved without restitution
   };
 
   void solve_island(const model::BodyState& bodies, const Island& island,

@@ -2,10 +2,7 @@
 /// The penalty method: springs and dampers [Makino 2007, section 2.1; eqs. 2.1, 2.2].
 #pragma once
 
-#include <vector>
-
 #include "gotai/impulse/method.h"
-#include "gotai/impulse/patch_friction.h"
 #include "gotai/impulse/spring_forces.h"
 
 namespace gotai::impulse {
@@ -24,8 +21,7 @@ namespace gotai::impulse {
 /// centre, or come to rest at once.
 class PenaltyMethod final : public ImpulseMethod {
  public:
-  /// @param tension  the damper may pull at the end of a contact, as (2.2) assumes
-  explicit PenaltyMethod(const model::Settings& settings, bool tension = false);
+  explicit PenaltyMethod(const model::Settings& settings);
 
   model::StepPlan plan(const model::BodyState& bodies, double dt) const override;
   void prepare(const model::BodyState& bodies, const model::ContactSet& contacts,
@@ -35,20 +31,13 @@ class PenaltyMethod final : public ImpulseMethod {
              model::Update& update) override;
   void finish(const model::BodyState& bodies, model::Update& update,
               model::ContactMemory& memory) override;
-  model::SolveReport report() const override { return report_; }
+  model::SolveReport report() const override { return springs_.report(); }
 
  private:
   double frequency(const model::BodyState& bodies, double dt) const;
 
   model::Settings settings_;
-  bool tension_;
-  const model::ContactSet* contacts_ = nullptr;  // of the step
-  std::vector<PairSpring> springs_;              // per pair
-  double substep_ = 0.0;
-  WorkingVelocities before_;
-  WorkingVelocities velocities_;
-  std::vector<double> normal_impulse_;  // per contact [N s]
-  model::SolveReport report_;
+  Springs springs_;
 };
 
 }  // namespace gotai::impulse

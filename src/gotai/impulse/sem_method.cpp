@@ -1,5 +1,6 @@
 #include "gotai/impulse/sem_method.h"
 
+#include "gotai/impulse/step_plans.h"
 #include "gotai/impulse/warm_start.h"
 
 namespace gotai::impulse {
@@ -7,10 +8,7 @@ namespace gotai::impulse {
 SemMethod::SemMethod(const model::Settings& settings) : settings_(settings), islands_(settings) {}
 
 model::StepPlan SemMethod::plan(const model::BodyState& /*bodies*/, double dt) const {
-  model::StepPlan plan;
-  plan.dt = dt;
-  plan.positions_first = settings_.time.integrator == model::Integrator::explicit_euler;
-  return plan;
+  return whole_step(settings_, dt);
 }
 
 void SemMethod::prepare(const model::BodyState& bodies, const model::ContactSet& contacts,

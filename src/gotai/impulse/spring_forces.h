@@ -46,4 +46,48 @@ std::uint32_t add_spring_impulses(const model::BodyState& bodies, const model::C
                                   std::vector<double>& normal_impulse,
                                   std::vector<Vec3>& contact_impulse);
 
+/// The springs of all pairs over a step: one entry per pair, and storage kept from step to step.
+class Springs {
+ public:
+  /// Fits a spring to every pair.
+  /// @param contacts  must live until the last solve()
+  /// @param fit       pair, surface -> PairSpring
+  template <typename Fit>
+  void prepare(const model::BodyState& bodies, const model::ContactSet& contacts,
+               const model::MaterialTable& materials, const model::StepPlan& plan, const Fit& fit) {
+    start(contacts, plan);
+    for (const model::ContactPair& pair : contacts.pairs) {
+      const model::SurfacePair surface =
+          materials.combine(bodies.material[pair.body_a], bodies.material[pair.body_b]);
+      PairSpring spring = fit(pair);
+      spring.damping_ratio = damping_ratio(surface.restitution);
+      spring.friction = surface.friction;
+      springs_.push_back(spring);
+    }
+  }
+
+  /// Adds the impulses of a sub-step, all springs read at its start.
+  /// @param gap  per contact [m]
+  void solve(const model::BodyState& bodies, const std::vector<double>& gap, model::Update& update);
+
+  /// Sub-steps, and the largest number of contacts that acted in one.
+  const model::SolveReport& report() const { return report_; }
+
+ private:
+  void start(const model::ContactSet& contacts, const model::StepPlan& plan);
+
+  const model::ContactSet* contacts_ = nullptr;  // of the step
+  std::vector<PairSpring> springs_;              // per pair
+  double substep_ = 0.0;                         // [s]
+  WorkingVelocities before_;
+  WorkingVelocities velocities_;
+  std::vector<double> normal_impulse_;  // per contact [N s]
+  model::SolveReport report_;
+};
+
+/// Sub-steps of a step of dt [s] in which the stiffest spring, at a body's rim, is followed
+/// closely.
+/// @param frequency  on the reduced mass [rad/s]
+int substeps_for_springs(const model::BodyState& bodies, double frequency, double dt);
+
 }  // namespace gotai::impulse

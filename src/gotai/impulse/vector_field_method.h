@@ -2,10 +2,7 @@
 /// The vector field: repulsion before touching [Makino 2007, section 2.3.5].
 #pragma once
 
-#include <vector>
-
 #include "gotai/impulse/method.h"
-#include "gotai/impulse/patch_friction.h"
 #include "gotai/impulse/spring_forces.h"
 
 namespace gotai::impulse {
@@ -31,17 +28,11 @@ class VectorFieldMethod final : public ImpulseMethod {
              model::Update& update) override;
   void finish(const model::BodyState& bodies, model::Update& update,
               model::ContactMemory& memory) override;
-  model::SolveReport report() const override { return report_; }
+  model::SolveReport report() const override { return springs_.report(); }
 
  private:
   model::Settings settings_;
-  const model::ContactSet* contacts_ = nullptr;  // of the step
-  std::vector<PairSpring> springs_;              // per pair
-  double substep_ = 0.0;
-  WorkingVelocities before_;
-  WorkingVelocities velocities_;
-  std::vector<double> normal_impulse_;  // per contact [N s]
-  model::SolveReport report_;
+  Springs springs_;
 };
 
 }  // namespace gotai::impulse

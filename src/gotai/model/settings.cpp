@@ -1,5 +1,7 @@
 #include "gotai/model/settings.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <span>
@@ -54,7 +56,7 @@ Enum parse(Names<Enum> names, std::string_view setting, std::string_view text) {
 }
 
 void require(bool ok, std::string_view name, double value, std::string_view reason) {
-  if (!ok) throw InvalidArgument(name, std::to_string(value), reason);
+  if (!ok) throw InvalidArgument(name, fmt::format("{:g}", value), reason);
 }
 
 }  // namespace
@@ -91,6 +93,10 @@ void validate(const Settings& s) {
           s.impulse.tolerance, "must be in (0, 1)");
   require(s.impulse.max_iterations >= 1, "impulse.max_iterations", s.impulse.max_iterations,
           "must be >= 1");
+  require(
+      s.impulse.penetration >= kLeastPenetration && s.impulse.penetration <= kLargestPenetration,
+      "impulse.penetration", s.impulse.penetration,
+      "must be in [1e-6, 0.5], a fraction of the smallest bounding radius");
   require(s.time.step >= 0.0 && std::isfinite(s.time.step), "time.step", s.time.step,
           "must be positive [s], or \"auto\"");
   require(s.time.safety > 0.0 && s.time.safety <= 1.0, "time.safety", s.time.safety,

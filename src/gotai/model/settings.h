@@ -32,6 +32,11 @@ struct CollisionSettings {
   int level = 6;  ///< k of Fig. 3-5; at most the prepared level of every shape
 };
 
+/// Bounds of ImpulseSettings::penetration: stiffer springs take thousands of sub-steps, softer ones
+/// hold nothing up.
+inline constexpr double kLeastPenetration = 1e-6;
+inline constexpr double kLargestPenetration = 0.5;
+
 struct ImpulseSettings {
   ImpulseMethodName method = ImpulseMethodName::constraint;
   ContactTreatment contacts = ContactTreatment::all;
@@ -41,6 +46,11 @@ struct ImpulseSettings {
   double ridge = 1e-9;
   double tolerance = 1e-10;   ///< iterative solver: relative natural-map residual
   int max_iterations = 1000;  ///< iterative solver: sweeps per step
+  /// Penalty method: how deep a body at rest may sink, as a fraction of the smallest dynamic body's
+  /// bounding radius.
+  double penetration = 1e-3;
+  /// Penalty method: dampers may pull at the end of a contact, as (2.2) assumes (erratum 2).
+  bool tension = false;
 };
 
 struct TimeSettings {

@@ -46,6 +46,8 @@ struct SolveReport {
   std::uint32_t rows = 0;        ///< unknowns that were solved for (contacts, or apparent contacts)
   std::uint32_t iterations = 0;  ///< largest number of iterations of an island
   std::uint32_t substeps = 1;
+  /// Islands solved without restitution, since with it and friction wedged bodies had no solution.
+  std::uint32_t plastic_islands = 0;
 };
 
 /// Mechanical energy [J]. total = kinetic + potential + correction; see World::energy().

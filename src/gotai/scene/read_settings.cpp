@@ -37,6 +37,10 @@ void read_impulse(TableReader& table, model::ImpulseSettings& impulse) {
   impulse.tolerance = table.number("tolerance", impulse.tolerance, range::positive);
   impulse.max_iterations =
       static_cast<int>(table.integer("max_iterations", impulse.max_iterations, 1, 1'000'000));
+  constexpr Range penetrations{model::kLeastPenetration, model::kLargestPenetration,
+                               "must be from 1e-6 to 0.5 (of the smallest bounding radius)"};
+  impulse.penetration = table.number("penetration", impulse.penetration, penetrations);
+  impulse.tension = table.boolean("tension", impulse.tension);
 }
 
 void read_time(TableReader& table, model::TimeSettings& time) {

@@ -108,6 +108,8 @@ void RunMonitor::on_step(const World& world, const model::StepReport& report) {
   totals_.step_margin = std::min(totals_.step_margin, next_safe_step_ / report.dt);
   next_safe_step_ = safe_step(world);
   totals_.residual_max = std::max(totals_.residual_max, report.solve.residual);
+  totals_.plastic_islands += report.solve.plastic_islands;
+  totals_.substeps_max = std::max<std::uint64_t>(totals_.substeps_max, report.solve.substeps);
 
   // The correction before the step refers to this step's sub-steps, not to the last one's.
   const double h = report.dt / report.solve.substeps;

@@ -69,7 +69,9 @@ struct RunSummary {
   /// Largest change of the dynamic bodies' momentum in a step that neither gravity nor the contacts
   /// with other bodies explain, as a fraction of the run's largest sum of m |v|.
   double momentum_error = 0.0;
-  double residual_max = 0.0;  ///< largest residual of the impulse solver [m/s]
+  double residual_max = 0.0;          ///< largest residual of the impulse solver [m/s]
+  std::uint64_t plastic_islands = 0;  ///< solved without restitution, summed over the steps
+  std::uint64_t substeps_max = 1;     ///< of a step
   std::uint64_t escaped = 0;  ///< dynamic bodies whose centre of mass is inside a plane's or a
                               ///< container's solid at the end
   std::string state_hash;     ///< of the final state
