@@ -54,7 +54,7 @@ Flow run_flow(const char* method) {
   setup.level = 5;
   setup.restitution = 0.3;
   setup.friction = 0.3;
-  setup.exact = false;
+  setup.reduced = setup.substepped = true;
   geometry::GeneratorOptions hexapod;
   hexapod.shape = "hexapod";
   Drop drop;

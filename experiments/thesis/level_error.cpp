@@ -24,6 +24,8 @@ Trajectory run_scene(const LevelErrorScene& scene, int level, std::uint64_t seed
   setup.model = "surface";
   setup.level = level;
   setup.dt = kReferenceStep;
+  setup.reduced = true;
+  setup.substepped = false;
   World world = scene.make(setup, seed);
   if (nudge > 0.0) {
     Snapshot start = world.snapshot();

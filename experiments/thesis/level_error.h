@@ -12,9 +12,9 @@
 
 namespace gotai::experiments {
 
-/// A scene by seed. Levels 3 to 5 run with the reference's step, so that what is left is the
-/// level's own; the reference is level 6. The window ends before trajectories that differ by
-/// 1e-6 m at the start have drifted apart (erratum 47).
+/// A scene by seed. Levels 3 to 5 run with the reference's step and are solved to round-off, so
+/// that what is left is the level's own; the reference is level 6. The window ends before
+/// trajectories that differ by 1e-6 m at the start have drifted apart (erratum 47).
 struct LevelErrorScene {
   std::string id;  ///< of the experiment and scene: references are kept by it
   /// A world of the scene, in the setup's model, at its level and step.

@@ -17,7 +17,7 @@ Setup base_setup(double friction) {
   setup.restitution = 0.3;
   setup.friction = friction;
   setup.dt = 0.01;
-  setup.exact = false;
+  setup.reduced = setup.substepped = true;
   return setup;
 }
 

@@ -120,7 +120,7 @@ Setup base_setup() {
   setup.dt = 1.0 / 200.0;
   setup.restitution = 0.3;
   setup.friction = 0.3;
-  setup.exact = false;
+  setup.reduced = setup.substepped = true;
   return setup;
 }
 

@@ -31,16 +31,14 @@ model::Settings settings_of(const Setup& setup) {
   settings.collision.model = model::parse_collision_model(setup.model);
   settings.collision.level = setup.level;
   settings.impulse.contacts = model::ContactTreatment::all;
-  using model::ContactTreatment;
-  using model::SolverName;
   if (setup.method == "C" || setup.method == "A") {
     settings.impulse.method = model::ImpulseMethodName::constraint;
-    settings.impulse.solver = setup.exact ? SolverName::exact : SolverName::iterative;
+    settings.impulse.solver = model::SolverName::exact;
     if (setup.method == "A") {
-      settings.impulse.contacts = ContactTreatment::apparent;
-    } else if (setup.model == "surface" && !setup.exact) {
-      settings.impulse.contacts = ContactTreatment::reduced;
-      settings.impulse.solver = SolverName::substepped;
+      settings.impulse.contacts = model::ContactTreatment::apparent;
+    } else if (setup.model == "surface") {
+      if (setup.reduced) settings.impulse.contacts = model::ContactTreatment::reduced;
+      if (setup.substepped) settings.impulse.solver = model::SolverName::substepped;
     }
   } else if (setup.method == "I") {
     settings.impulse.method = model::ImpulseMethodName::impulse_averaged;

@@ -29,9 +29,10 @@ struct Setup {
   double restitution = 0.5;
   double friction = 0.0;
   bool explicit_euler = false;
-  /// C and A solve to round-off; else as scenes of many bodies are run: by the iterative solver,
-  /// and C with few surface contacts per patch in sub-steps.
-  bool exact = true;
+  /// C with the surface model keeps few contacts per patch, as scenes of many bodies are run.
+  bool reduced = false;
+  /// .. and solves them in sub-steps; else C and A solve to round-off.
+  bool substepped = false;
 };
 
 /// Fills a setup from the keys of a point that are there (method, model, level, dt, integrator).
