@@ -35,20 +35,27 @@ void GaussSeidelSolver::solve(const ConeProblem& problem, const std::vector<Vec3
   sweeps_.run(problem, all_contacts(problem), std::min(sweeps_per_round, max_sweeps), limit,
               solution);
   measure(problem, limit, solution);
+  // Contact sweeps, then patch sweeps, each as long as they pay; the first patch sweep is over all
+  // patches and makes the shares even.
   for (bool all = true; all || !solution.converged; all = false) {
-    // Contact sweeps, then patch sweeps, each as long as they pay.
     while (!solution.converged && sweeps_left() > 0) {
       const double before = solution.residual;
       sweep_unsolved(problem, sweeps_left(), limit, solution);
       measure(problem, limit, solution);
       if (solution.residual > worthwhile_progress * before) break;
     }
-    for (bool first = true; sweeps_left() > 0; first = false) {
+    bool pays = all || !solution.converged;
+    for (bool first = all; pays && sweeps_left() > 0; first = false) {
       const double before = solution.residual;
-      sweep_patches(problem, limit, all && first, solution);
+      kept_ = solution.p;
+      sweep_patches(problem, limit, first, solution);
       ++patch_sweeps;
       measure(problem, limit, solution);
-      if (solution.converged || solution.residual > worthwhile_progress * before) break;
+      if (!first && solution.residual > before) {
+        solution.p = kept_;
+        measure(problem, limit, solution);
+      }
+      pays = !solution.converged && solution.residual <= worthwhile_progress * before;
     }
     if (sweeps_left() <= 0) break;
   }

@@ -44,6 +44,7 @@ class GaussSeidelSolver {
   std::vector<Patch> patches_;
   ContactSweeps sweeps_;
   std::vector<Vec3> guess_;
+  std::vector<Vec3> kept_;  // p before a patch sweep
   NewtonSolver newton_;
 };
 
