@@ -9,23 +9,6 @@
 #include "gotai/impulse/step_plans.h"
 
 namespace gotai::impulse {
-namespace {
-
-// Few rows converge in a handful of sweeps; where they do not, Newton makes the answer exact.
-void solve_pairs(const ConeProblem& problem, const model::ImpulseSettings& settings,
-                 ConeSolution& solution) {
-  const double scale = velocity_scale(problem);
-  if (!uses_exact_solver(problem, settings)) {
-    solve_rows(problem, settings.tolerance * scale, settings.max_iterations, solution);
-    return;
-  }
-  constexpr double exact_tolerance = 1e-13;
-  constexpr int worthwhile_sweeps = 60;
-  solve_rows(problem, exact_tolerance * scale, worthwhile_sweeps, solution);
-  if (!solution.converged) solve_by_settings(problem, nullptr, settings, solution);
-}
-
-}  // namespace
 
 ApparentMethod::ApparentMethod(const model::Settings& settings) : settings_(settings) {}
 
@@ -83,20 +66,34 @@ void ApparentMethod::find_weights(const model::BodyState& bodies, const std::vec
   }
 }
 
+// Few rows converge in a handful of sweeps; where they do not, Newton makes the answer exact.
+void ApparentMethod::solve_pairs() {
+  const double scale = velocity_scale(problem_);
+  if (!uses_exact_solver(problem_, settings_.impulse)) {
+    rows_.solve(problem_, settings_.impulse.tolerance * scale, settings_.impulse.max_iterations,
+                solution_);
+    return;
+  }
+  constexpr double exact_tolerance = 1e-13;
+  constexpr int worthwhile_sweeps = 200;
+  rows_.solve(problem_, exact_tolerance * scale, worthwhile_sweeps, solution_);
+  if (!solution_.converged) solve_by_settings(problem_, nullptr, settings_.impulse, solution_);
+}
+
 // One row per patch with an approaching contact: sum w_i (row of contact i) / scale, as the force
 // and the torque that the spread impulses exert.
-void ApparentMethod::assemble_pairs(const model::BodyState& bodies, const Island& island,
-                                    ConeProblem& problem) const {
+void ApparentMethod::assemble_pairs(const model::BodyState& bodies, const Island& island) {
+  ConeProblem& problem = problem_;
   problem.clear();
   problem.blocks = island.bodies.size();
   problem.y_free.resize(static_cast<Eigen::Index>(6 * problem.blocks));
-  std::vector<Mat3> inertia(problem.blocks);
+  inertia_.resize(problem.blocks);
   for (std::size_t b = 0; b < problem.blocks; ++b) {
     const model::BodyIndex i = island.bodies[b];
-    inertia[b] = inertia_scale(bodies.inverse_I_W[i]);
+    inertia_[b] = inertia_scale(bodies.inverse_I_W[i]);
     problem.y_free.segment<6>(static_cast<Eigen::Index>(6 * b))
         << bodies.v_W[i] / std::sqrt(bodies.inverse_mass[i]),
-        inertia[b].transpose() * bodies.L_W[i];
+        inertia_[b].transpose() * bodies.L_W[i];
   }
   problem.patch.push_back(0);
   for_each_patch(island, [&](std::uint32_t k) {
@@ -121,7 +118,7 @@ void ApparentMethod::assemble_pairs(const model::BodyState& bodies, const Island
       const Vec3 torque = moment + (apparent.point - bodies.x_W[body]).cross(force);
       Coupling coupling{block, Jacobian::Zero()};
       coupling.J.row(0) << sign * std::sqrt(bodies.inverse_mass[body]) * force.transpose(),
-          sign * torque.transpose() * inertia[block];
+          sign * torque.transpose() * inertia_[block];
       v_star -= coupling.J.row(0).dot(problem.y_free.segment<6>(Eigen::Index{6} * block));
       problem.couplings.push_back(coupling);
     }
@@ -131,7 +128,8 @@ void ApparentMethod::assemble_pairs(const model::BodyState& bodies, const Island
     problem.friction.push_back(0.0);
     problem.patch.push_back(static_cast<std::uint32_t>(problem.size()));
   });
-  set_compliance(problem, std::vector<double>(problem.size(), 1.0), settings_.impulse.ridge);
+  area_.assign(problem.size(), 1.0);
+  set_compliance(problem, area_, settings_.impulse.ridge);
 }
 
 void ApparentMethod::solve(const model::BodyState& bodies, const std::vector<double>& gap,
@@ -141,20 +139,18 @@ void ApparentMethod::solve(const model::BodyState& bodies, const std::vector<dou
   velocities_.read(bodies);
   report_ = {};
   report_.islands = static_cast<std::uint32_t>(islands_.size());
-  ConeProblem problem;
-  ConeSolution solution;
   for (const Island& island : islands_) {
-    assemble_pairs(bodies, island, problem);
-    solve_pairs(problem, settings_.impulse, solution);
-    report_.rows += static_cast<std::uint32_t>(problem.size());
-    report_.residual = std::max(report_.residual, solution.residual);
+    assemble_pairs(bodies, island);
+    solve_pairs();
+    report_.rows += static_cast<std::uint32_t>(problem_.size());
+    report_.residual = std::max(report_.residual, solution_.residual);
     report_.iterations =
-        std::max(report_.iterations, static_cast<std::uint32_t>(solution.iterations));
+        std::max(report_.iterations, static_cast<std::uint32_t>(solution_.iterations));
 
     std::size_t row = 0;
     for_each_patch(island, [&](std::uint32_t k) {
       const model::ContactPair& pair = patches_[k];
-      const double alpha = solution.p[row++].x() / apparent_[k].scale;  // (5.19)
+      const double alpha = solution_.p[row++].x() / apparent_[k].scale;  // (5.19)
       for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
         normal_impulse_[i] = alpha * std::max(-v_star_[i], 0.0);
       }

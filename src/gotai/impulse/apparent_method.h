@@ -10,6 +10,7 @@
 #include "gotai/impulse/islands.h"
 #include "gotai/impulse/method.h"
 #include "gotai/impulse/patch_friction.h"
+#include "gotai/impulse/row_solver.h"
 
 namespace gotai::impulse {
 
@@ -51,8 +52,8 @@ class ApparentMethod final : public ImpulseMethod {
     }
   }
   void find_weights(const model::BodyState& bodies, const std::vector<double>& gap);
-  void assemble_pairs(const model::BodyState& bodies, const Island& island,
-                      ConeProblem& problem) const;
+  void assemble_pairs(const model::BodyState& bodies, const Island& island);
+  void solve_pairs();
 
   model::Settings settings_;
   const model::ContactSet* contacts_ = nullptr;  // of the step
@@ -66,6 +67,11 @@ class ApparentMethod final : public ImpulseMethod {
   std::vector<double> bias_;    // per contact, row_bias() [m/s]
   std::vector<ApparentContact> apparent_;  // per patch
   std::vector<double> normal_impulse_;     // per contact [N s]
+  ConeProblem problem_;                    // of one island: a row per apparent contact
+  std::vector<Mat3> inertia_;              // per block
+  std::vector<double> area_;               // per row
+  RowSolver rows_;
+  ConeSolution solution_;
   WorkingVelocities velocities_;
   model::SolveReport report_;
 };

@@ -36,6 +36,7 @@ class GaussSeidelSolver {
 
   void cut(const ConeProblem& problem);
   void sweep_unsolved(const ConeProblem& problem, int sweeps, double limit, ConeSolution& solution);
+  void solve_parts(const ConeProblem& problem, double limit, ConeSolution& solution);
   void sweep_patches(const ConeProblem& problem, double limit, bool all, ConeSolution& solution);
   double residual(const ConeProblem& problem, const Patch& patch,
                   const ConeSolution& solution) const;
@@ -43,7 +44,8 @@ class GaussSeidelSolver {
 
   std::vector<Patch> patches_;
   ContactSweeps sweeps_;
-  std::vector<Vec3> guess_;
+  std::vector<Vec3> guess_;  // p of a patch or part
+  std::vector<Vec3> kept_;   // p before a patch sweep
   NewtonSolver newton_;
 };
 

@@ -8,11 +8,23 @@ namespace {
 // Below this [m/s] a contact counts as sticking: its direction of sliding is rounding error.
 constexpr double no_sliding = 1e-14;
 
-// Force and torque about a body's centre of mass that unit friction has.
+// Force and torque about a body's centre of mass.
 struct Wrench {
   Vec3 force = Vec3::Zero();
   Vec3 torque = Vec3::Zero();
+
+  void add(const Vec3& f, const Vec3& arm) {
+    force += f;
+    torque += arm.cross(f);
+  }
 };
+
+void act(const model::BodyState& bodies, model::BodyIndex i, double scale, const Wrench& wrench,
+         WorkingVelocities& velocities) {
+  if (!bodies.is_dynamic(i)) return;
+  velocities.v_W[i] += scale * bodies.inverse_mass[i] * wrench.force;
+  velocities.w_W[i] += scale * (bodies.inverse_I_W[i] * wrench.torque);
+}
 
 double response(const model::BodyState& bodies, model::BodyIndex i, const Wrench& wrench) {
   if (!bodies.is_dynamic(i)) return 0.0;
@@ -49,20 +61,28 @@ void WorkingVelocities::add_impulse(const model::BodyState& bodies, const model:
 void WorkingVelocities::write_changes(const model::BodyState& bodies, model::Update& update) const {
   for (model::BodyIndex i = 0; i < bodies.size(); ++i) {
     if (!bodies.is_dynamic(i)) continue;
-    update.delta_v[i] += v_W[i] - bodies.v_W[i];
-    update.delta_L[i] += model::angular_momentum(bodies, i, w_W[i] - bodies.w_W[i]);
+    const Vec3 dv = v_W[i] - bodies.v_W[i];
+    const Vec3 dw = w_W[i] - bodies.w_W[i];
+    if (dv.isZero(0.0) && dw.isZero(0.0)) continue;
+    update.delta_v[i] += dv;
+    update.delta_L[i] += model::angular_momentum(bodies, i, dw);
   }
 }
 
 void add_normal_impulses(const model::BodyState& bodies, const model::ContactSet& contacts,
                          const model::ContactPair& pair, const std::vector<double>& normal_impulse,
                          WorkingVelocities& velocities, std::vector<Vec3>& contact_impulse) {
+  Wrench on_a;
+  Wrench on_b;
   for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
     if (normal_impulse[i] == 0.0) continue;
     const Vec3 impulse = normal_impulse[i] * contacts.normal_W[i];
-    velocities.add_impulse(bodies, pair, contacts.point_W[i], impulse);
+    on_a.add(impulse, contacts.point_W[i] - bodies.x_W[pair.body_a]);
+    on_b.add(-impulse, contacts.point_W[i] - bodies.x_W[pair.body_b]);
     contact_impulse[i] += impulse;
   }
+  act(bodies, pair.body_a, 1.0, on_a, velocities);
+  act(bodies, pair.body_b, 1.0, on_b, velocities);
 }
 
 void add_patch_friction(const model::BodyState& bodies, const model::ContactSet& contacts,
@@ -70,27 +90,24 @@ void add_patch_friction(const model::BodyState& bodies, const model::ContactSet&
                         const std::vector<double>& normal_impulse, WorkingVelocities& velocities,
                         std::vector<Vec3>& contact_impulse) {
   if (friction == 0.0) return;
-  const auto full_sliding = [&](std::uint32_t i) -> Vec3 {
-    if (normal_impulse[i] <= 0.0) return Vec3::Zero();
-    const Vec3& n = contacts.normal_W[i];
-    const Vec3 slip = velocities.relative(bodies, pair, contacts.point_W[i]);
-    const Vec3 tangential = slip - n.dot(slip) * n;
-    const double speed = tangential.norm();
-    if (speed < no_sliding) return Vec3::Zero();
-    return -friction * normal_impulse[i] / speed * tangential;
-  };
-
+  velocities.sliding_friction.resize(pair.size());
   Wrench on_a;
   Wrench on_b;
   double power = 0.0;
   for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
-    const Vec3 f = full_sliding(i);
+    Vec3& friction_i = velocities.sliding_friction[i - pair.begin];
+    friction_i.setZero();
+    if (normal_impulse[i] <= 0.0) continue;
+    const Vec3& n = contacts.normal_W[i];
     const Vec3& x = contacts.point_W[i];
-    power += f.dot(velocities.relative(bodies, pair, x));
-    on_a.force += f;
-    on_a.torque += (x - bodies.x_W[pair.body_a]).cross(f);
-    on_b.force -= f;
-    on_b.torque -= (x - bodies.x_W[pair.body_b]).cross(f);
+    const Vec3 slip = velocities.relative(bodies, pair, x);
+    const Vec3 tangential = slip - n.dot(slip) * n;
+    const double speed = tangential.norm();
+    if (speed < no_sliding) continue;
+    friction_i = -friction * normal_impulse[i] / speed * tangential;
+    power += friction_i.dot(slip);
+    on_a.add(friction_i, x - bodies.x_W[pair.body_a]);
+    on_b.add(-friction_i, x - bodies.x_W[pair.body_b]);
   }
   const double quadratic =
       response(bodies, pair.body_a, on_a) + response(bodies, pair.body_b, on_b);
@@ -98,15 +115,10 @@ void add_patch_friction(const model::BodyState& bodies, const model::ContactSet&
   const double lambda = std::min(1.0, -power / quadratic);
 
   for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
-    contact_impulse[i] += lambda * full_sliding(i);
+    contact_impulse[i] += lambda * velocities.sliding_friction[i - pair.begin];
   }
-  const auto act = [&](model::BodyIndex i, const Wrench& wrench) {
-    if (!bodies.is_dynamic(i)) return;
-    velocities.v_W[i] += lambda * bodies.inverse_mass[i] * wrench.force;
-    velocities.w_W[i] += lambda * (bodies.inverse_I_W[i] * wrench.torque);
-  };
-  act(pair.body_a, on_a);
-  act(pair.body_b, on_b);
+  act(bodies, pair.body_a, lambda, on_a, velocities);
+  act(bodies, pair.body_b, lambda, on_b, velocities);
 }
 
 }  // namespace gotai::impulse

@@ -14,6 +14,8 @@ namespace gotai::impulse {
 struct WorkingVelocities {
   std::vector<Vec3> v_W;  ///< [m/s]
   std::vector<Vec3> w_W;  ///< [rad/s]
+  std::vector<Vec3>
+      sliding_friction;  ///< of add_patch_friction: full friction per contact [N s], W
 
   /// Copies the velocities of the state; storage is kept.
   void read(const model::BodyState& bodies);
