@@ -57,6 +57,38 @@ TEST(Hdf5File, NewColumnsReadAsNan) {
   EXPECT_EQ(values[6], 5.0);
 }
 
+// HDF5 1.10 divides by zero when the chunk size of an unchecked structure is damaged.
+TEST(Hdf5File, StructuresHaveChecksums) {
+  test::TemporaryFolder folder;
+  const std::string path = folder.file("a.h5");
+  {
+    Hdf5File file = Hdf5File::create(path);
+    file.create_table("/frames/pose", Scalar::f64, {2, 3}, 4);
+  }
+  {
+    Hdf5File file = Hdf5File::append(path);
+    file.append_rows<double>("/frames/pose", std::vector<double>(60, 1.0));
+    file.create_table("/late", Scalar::u8, {}, 4);
+    file.write_text("/scene/text", "a = 1\n");
+  }
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  EXPECT_EQ(bytes.at(8), 2) << "version 3 cannot be opened after a killed writer";
+  EXPECT_THAT(bytes, HasSubstr("OHDR"));
+  for (const char* unchecked : {"TREE", "SNOD", "HEAP"})
+    EXPECT_EQ(bytes.find(unchecked), std::string::npos) << unchecked;
+  // Every byte of the table's description, damaged, is noticed.
+  const std::size_t begin = bytes.find("OHDR", bytes.find("OHDR") + 1);
+  for (std::size_t at = begin; at < begin + 64; ++at) {
+    std::string bad = bytes;
+    bad[at] = static_cast<char>(bad[at] ^ 1);
+    const std::string damaged = folder.file("damaged.h5");
+    std::ofstream(damaged, std::ios::binary) << bad;
+    EXPECT_THROW(Hdf5File::read(damaged).read_rows<double>("/frames/pose", {2, 3}, 0, 1), FileError)
+        << at - begin;
+  }
+}
+
 TEST(Hdf5File, AnExistingFileIsNotOverwritten) {
   test::TemporaryFolder folder;
   std::ofstream(folder.file("a.h5")) << "precious";

@@ -184,7 +184,9 @@ TEST_F(Live, SlowsTheRunByLessThanATwentieth) {
   pile.add_plane({});
   for (int i = 0; i < 20; ++i) {
     BodyDescription body;
-    body.X_WM.p = Vec3(0.9 * (i % 4), 0.9 * (i / 4 % 2), 0.6 + 0.9 * (i / 8));
+    const int row = i / 4 % 2;
+    const int layer = i / 8;
+    body.X_WM.p = Vec3(0.9 * (i % 4), 0.9 * row, 0.6 + 0.9 * layer);
     pile.add_body(body);
   }
   LiveServer live(pile, "pile", "test", {.free_seconds = 0.0});

@@ -8,6 +8,7 @@ namespace gotai::impulse {
 namespace {
 
 constexpr double softest = 1e9;  // first compliance of approach(), times the stated one
+constexpr int compliances = 10;  // of approach(), a tenth each time: the last is the stated one
 constexpr int steps_per_compliance = 12;
 constexpr int polish_steps = 30;
 constexpr int refine_steps = 12;
@@ -133,7 +134,8 @@ void NewtonSolver::approach(const ConeProblem& problem, ConeSolution& solution) 
   const bool symmetric =
       std::all_of(problem.friction.begin(), problem.friction.end(), frictionless);
   const double scale = problem.y_free.norm();
-  for (double softness = softest; softness >= 0.5; softness /= 10.0) {
+  double softness = softest;
+  for (int i = 0; i < compliances; ++i, softness /= 10.0) {
     const double enough = scale * (softness > 5.0 ? 1e-3 : 1e-7);
     double error = evaluate(problem, softness, solution.y);
     for (int k = 0; k < steps_per_compliance && error > enough; ++k) {

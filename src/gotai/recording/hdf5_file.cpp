@@ -140,6 +140,11 @@ void require_content(const std::string& path) {
                   "is empty: its run ended before anything was recorded; remove it and start anew");
 }
 
+/// HDF5's older structures have no checksums, and damaged ones can crash it.
+void write_with_checksums(hid_t file) {
+  H5Fset_libver_bounds(file, H5F_LIBVER_V110, H5F_LIBVER_V110);
+}
+
 std::string failure_text(const std::string& fallback) {
   return transaction_failure().empty() ? fallback : transaction_failure();
 }
@@ -153,8 +158,11 @@ Hdf5File Hdf5File::create(const std::string& path) {
     throw FileError(path, "exists already; remove it, choose another name, or resume it");
   }
   const Handle access(make_transaction_access(), H5Pclose);
+  // Not newer: the next superblock refuses to be opened after a killed writer.
+  H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);
   const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access);
   if (id < 0) throw FileError(path, "cannot be created: " + failure_text("unknown reason"));
+  write_with_checksums(id);
   return {path, id};
 }
 
@@ -167,6 +175,7 @@ Hdf5File Hdf5File::append(const std::string& path) {
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
   if (id < 0)
     throw FileError(path, "cannot be opened for writing: " + failure_text("no recording"));
+  write_with_checksums(id);
   return {path, id};
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 namespace gotai::render {
 namespace {
@@ -84,13 +83,14 @@ void Surroundings::add_container(const view::BodyView& body, const Vec3f& p,
 
 void Surroundings::add_ground() {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  const auto is_floor = [](const Face& face) { return face.normal.z() > 0.999F; };
-  const auto lower = [](const Face& a, const Face& b) { return a.center.z() < b.center.z(); };
-  auto floors = faces_ | std::views::filter(is_floor);
-  const auto lowest = std::ranges::min_element(floors, lower);
-  if (lowest == floors.end()) return;
-  faces_.push_back({(*lowest).center, Vec3f::UnitX(), Vec3f::UnitY(), Vec3f::UnitZ(), kInfinity,
-                    kInfinity, true});
+  const Face* lowest = nullptr;
+  for (const Face& face : faces_) {
+    const bool is_floor = face.normal.z() > 0.999F;
+    if (is_floor && (lowest == nullptr || face.center.z() < lowest->center.z())) lowest = &face;
+  }
+  if (lowest == nullptr) return;
+  faces_.push_back(
+      {lowest->center, Vec3f::UnitX(), Vec3f::UnitY(), Vec3f::UnitZ(), kInfinity, kInfinity, true});
 }
 
 std::optional<Surface> Surroundings::intersect(const Vec3f& origin, const Vec3f& direction,
