@@ -96,6 +96,45 @@ TEST(Substepped, RestitutionReturnsTheSpeed) {
   EXPECT_NEAR(world.bodies().v_W[1].z(), 1.5, 0.03);
 }
 
+/// Velocity after the first impact of a cube, prepared with its surface, on the floor.
+Vec3 bounce_on_surface(const Vec3& v, double friction) {
+  model::Settings settings;
+  settings.gravity = Vec3(0, 0, -9.8);
+  settings.collision.model = model::CollisionModel::surface;
+  settings.collision.level = kLevel;
+  settings.impulse.contacts = model::ContactTreatment::reduced;
+  settings.impulse.solver = model::SolverName::substepped;
+  settings.time.step = 1e-3;
+  World world(settings);
+  model::Material material;
+  material.restitution = 0.3;
+  material.friction = friction;
+  world.set_default_material(material);
+  world.add_plane({});
+  geometry::GeneratorOptions options;
+  options.shape = "cube";
+  voxel::ShapeOptions how;
+  how.prepared_level = kLevel;
+  how.surface_level = kLevel;
+  const auto cube = std::make_shared<const voxel::Shape>(
+      voxel::make_shape("cube", geometry::generate(options), how));
+  add_cube(world, world.add_shape(cube), Vec3(0, 0, 0.8), v);
+  while (world.time() < 1.0 && world.bodies().v_W[1].z() <= 0.0) world.step();
+  return world.bodies().v_W[1];
+}
+
+TEST(Substepped, ABoxThatLandsFlatDoesNotLeaveSideways) {
+  const Vec3 v = bounce_on_surface(Vec3::Zero(), 0.3);
+  EXPECT_NEAR(v.z(), 0.3 * 2.42, 0.01);
+  EXPECT_LT(v.head<2>().norm(), 0.005 * 2.42);  // 4 % when the bounce has no friction
+}
+
+TEST(Substepped, FrictionSlowsASlidingBoxByTheWholeImpulseOfTheBounce) {
+  const double v_in = std::sqrt(2.0 * 9.8 * 0.3);
+  const double slowed = 8.0 - bounce_on_surface(Vec3(8, 0, 0), 0.1).x();
+  EXPECT_NEAR(slowed, 0.1 * 1.3 * v_in, 0.03 * 0.1 * 1.3 * v_in);
+}
+
 TEST(Substepped, AStackStandsAndEnergyOnlyFalls) {
   World world = floor_world(0.0, 0.5, 1.0 / 60.0);
   const ShapeId shape = world.add_shape(shape_of("cube"));

@@ -116,8 +116,10 @@ HWY_INLINE V normal_velocity(std::size_t l, const ContactRow& row, const Motion&
          dot(load(row.j_b, l), m.w_b);
 }
 
-/// Friction: the exact 2x2 stick solution, then onto the cone.
-HWY_INLINE void solve_friction(const PairBatch& batch, std::size_t l, ContactRow& row, Motion& m) {
+/// Friction of the lanes in `active`: the exact 2x2 stick solution, then onto the cone.
+template <typename Mask>
+HWY_INLINE void solve_friction(const PairBatch& batch, std::size_t l, ContactRow& row,
+                               const Mask& active, Motion& m) {
   const V3 n = load(row.n, l);
   const V3 t1 = load(row.t, l);
   const V3 t2 = cross(n, t1);
@@ -137,8 +139,8 @@ HWY_INLINE void solve_friction(const PairBatch& batch, std::size_t l, ContactRow
   const V tiny = hn::Set(d, 1e-30F);
   const V scale =
       hn::IfThenElse(slides, limit / hn::Sqrt(hn::Max(length_squared, tiny)), hn::Set(d, 1.0F));
-  p_1 = p_1 * scale;
-  p_2 = p_2 * scale;
+  p_1 = hn::IfThenElse(active, p_1 * scale, old_1);
+  p_2 = hn::IfThenElse(active, p_2 * scale, old_2);
   store(p_1, row.p_1, l);
   store(p_2, row.p_2, l);
   const V d_1 = p_1 - old_1;
@@ -210,10 +212,11 @@ template <bool kBiased>
 HWY_INLINE void sweep(SoftBody* bodies, const PairBatch* batches, std::size_t count,
                       ContactRow* rows, float inverse_h) {
   const V inverse = hn::Set(Tag(), inverse_h);
+  const auto everywhere = hn::FirstN(Tag(), kLanes);
   for_each_group(bodies, batches, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
     for (int visit = 0; visit < kVisitsPerSweep; ++visit) {
       for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
-        solve_friction(batch, l, rows[r], m);
+        solve_friction(batch, l, rows[r], everywhere, m);
       for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
         solve_normal<kBiased>(batch, l, rows[r], inverse, m);
     }
@@ -246,18 +249,37 @@ void Restitution(SoftBody* bodies, const PairBatch* batches, std::size_t count, 
   for_each_group(bodies, batches, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
     const V e = load(batch.restitution, l);
     const std::uint32_t count_rows = batch.row_end - batch.row_begin;
-    for (std::uint32_t k = 0; k < kVisitsPerRestitution * count_rows; ++k) {
-      ContactRow& row = rows[batch.row_begin + k % count_rows];
-      const V approach = load(row.approach, l);
-      const V old = load(row.p_n, l);
-      const auto bounces = hn::And(hn::And(hn::Lt(approach, slow), hn::Gt(e, zero())),
-                                   hn::Gt(load(row.total_n, l), zero()));
-      const V velocity = normal_velocity(l, row, m) + e * approach;
-      const V p = hn::Max(old - load(row.mass_n, l) * velocity, zero());
-      const V change = hn::IfThenElseZero(bounces, p - old);
-      store(old + change, row.p_n, l);
-      store(load(row.total_n, l) + change, row.total_n, l);
-      push_normal(batch, l, row, change, m);
+    const auto bounces = [&](const ContactRow& row) {
+      return hn::And(hn::And(hn::Lt(load(row.approach, l), slow), hn::Gt(e, zero())),
+                     hn::Gt(load(row.total_n, l), zero()));
+    };
+    bool any = false;
+    for (std::uint32_t k = 0; k < count_rows && !any; ++k)
+      any = !hn::AllFalse(Tag(), bounces(rows[batch.row_begin + k]));
+    if (!any) return;
+    for (int visit = 0; visit < kVisitsPerRestitution; ++visit) {
+      for (std::uint32_t k = 0; k < count_rows; ++k) {
+        ContactRow& row = rows[batch.row_begin + k];
+        const V old = load(row.p_n, l);
+        const V velocity = normal_velocity(l, row, m) + e * load(row.approach, l);
+        const V p = hn::Max(old - load(row.mass_n, l) * velocity, zero());
+        const V change = hn::IfThenElseZero(bounces(row), p - old);
+        store(old + change, row.p_n, l);
+        store(load(row.total_n, l) + change, row.total_n, l);
+        push_normal(batch, l, row, change, m);
+      }
+      // The impulse that throws bodies apart has its friction, too; normals have the last word.
+      if (visit + 1 == kVisitsPerRestitution) break;
+      for (std::uint32_t k = 0; k < count_rows; ++k) {
+        ContactRow& row = rows[batch.row_begin + k];
+        const auto bouncing = bounces(row);
+        if (hn::AllFalse(Tag(), bouncing)) continue;
+        const V old_1 = load(row.p_1, l);
+        const V old_2 = load(row.p_2, l);
+        solve_friction(batch, l, row, bouncing, m);
+        store(load(row.total_1, l) + (load(row.p_1, l) - old_1), row.total_1, l);
+        store(load(row.total_2, l) + (load(row.p_2, l) - old_2), row.total_2, l);
+      }
     }
     scatter_pair(batch, l, m, bodies);
   });
