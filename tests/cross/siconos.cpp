@@ -125,6 +125,10 @@ TEST(Siconos, FrictionalVelocitiesAgreeOnFullRankProblems) {
     ConeSolution exact;
     solve_exact(problem, nullptr, 1e-12, exact);
     EXPECT_LE(exact.residual, 1e-8) << trial;
+    ConeSolution iterative;
+    GaussSeidelSolver().solve(problem, nullptr, 1e-11, 20000, iterative);
+    EXPECT_LE(iterative.residual, 1e-8) << trial;
+    EXPECT_LE((exact.y - iterative.y).lpNorm<Eigen::Infinity>(), 1e-6) << trial << " mu " << mu;
     const Eigen::VectorXd p = nsgs(problem);
     if (p.size() == 0) continue;
     ++compared;

@@ -107,6 +107,33 @@ TEST(Incline, BlockSticks) {
   }
 }
 
+TEST(Golden, ABlockSlidesToAStopAndSticksOnAnIncline) {
+  const double dt = 1e-3;
+  const nlohmann::json file = test::golden("dynamics.json");
+  for (const auto& golden : file["cases"]) {
+    const auto& in = golden["inputs"];
+    if (golden["id"] == "slide_to_stop") {
+      const double v0 = in["v0"][0];
+      test::CubeWorld scene(settings_of(3, dt, SolverName::exact), in["e"], in["mu"], overlap,
+                            Vec3(v0, 0, 0));
+      while (scene.velocity().x() > 1e-9) scene.world.step();
+      EXPECT_NEAR(scene.world.time(), golden["expected"]["t_stop"], 2.0 * dt);
+      EXPECT_NEAR(scene.position().x(), golden["expected"]["distance"], v0 * dt);
+      const Vec3 stopped = scene.position();
+      scene.world.run_until(scene.world.time() + 2.0);
+      EXPECT_LE((scene.position() - stopped).norm(), 1e-3);
+    } else if (golden["id"] == "incline_stick") {
+      const double angle = in["theta_deg"].get<double>() * M_PI / 180.0;
+      test::CubeWorld scene(settings_of(3, dt, SolverName::exact), 0.0, in["mu"], overlap,
+                            Vec3::Zero(), Vec3::Zero(),
+                            Quat(Eigen::AngleAxisd(angle, Vec3::UnitY())));
+      const Vec3 start = scene.position();
+      scene.world.run_until(in["t"]);
+      EXPECT_LE((scene.position() - start).norm(), 1e-6);
+    }
+  }
+}
+
 TEST(Incline, BlockSlides) {
   // tan 20 = 0.364 > mu = 0.2: a = g (sin - mu cos), x_n = a h^2 n (n + 1) / 2.
   const double angle = 20.0 * M_PI / 180.0;

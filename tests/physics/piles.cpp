@@ -28,10 +28,15 @@ INSTANTIATE_TEST_SUITE_P(
         Method{ImpulseMethodName::constraint, ContactTreatment::all, SolverName::iterative, 1e-6},
         Method{ImpulseMethodName::constraint, ContactTreatment::apparent, SolverName::exact, 1e-9},
         Method{ImpulseMethodName::impulse_averaged, ContactTreatment::all, SolverName::exact, 1e-9},
-        // Springs still give back what they stored when the pile came down.
-        Method{ImpulseMethodName::penalty, ContactTreatment::all, SolverName::exact, 1e-3},
-        Method{ImpulseMethodName::sem, ContactTreatment::all, SolverName::exact, 1e-6},
-        Method{ImpulseMethodName::vector_field, ContactTreatment::all, SolverName::exact, 1e-2}));
+        Method{ImpulseMethodName::penalty, ContactTreatment::all, SolverName::exact, 1e-9},
+        Method{ImpulseMethodName::sem, ContactTreatment::all, SolverName::exact, 1e-9},
+        Method{ImpulseMethodName::vector_field, ContactTreatment::all, SolverName::exact, 1e-7}));
+
+double fastest_body(const World& world) {
+  double fastest = 0.0;
+  for (const Vec3& v : world.bodies().v_W) fastest = std::max(fastest, v.norm());
+  return fastest;
+}
 
 TEST_P(RestingPile, GainsNoEnergy) {
   model::Settings settings = test::thesis_settings(4, 0.01);
@@ -51,10 +56,14 @@ TEST_P(RestingPile, GainsNoEnergy) {
     world.add_body(body);
   }
   world.add_plane({});
+  // Springs give back what they stored until the pile is at rest; averaged impulses and apparent
+  // contacts never quite are.
   world.run_until(10.0);
+  while (world.time() < 20.0 && fastest_body(world) > 1e-5) world.step();
+  const double start_time = world.time();
   const double start = world.energy().total();
   double gain = 0.0;
-  while (world.time() < 13.0) {
+  while (world.time() < start_time + 3.0) {
     world.step();
     gain = std::max(gain, world.energy().total() - start);
   }
@@ -88,6 +97,51 @@ double worst_tilt(ContactTreatment contacts) {
 TEST(Stack, StandsWithAllContactsAndTiltsWithApparentOnes) {
   EXPECT_LE(worst_tilt(ContactTreatment::all), 1.0);
   EXPECT_GE(worst_tilt(ContactTreatment::apparent), 3.0);
+}
+
+// Four hexapods that fall on each other: centres of mass every 1/50 s over one second.
+std::vector<Vec3> falling_centres(std::uint64_t seed, double dt, ContactTreatment contacts) {
+  static const auto shape = test::make_generated("hexapod", 7);
+  const double extent = shape->pyramid.grid.voxel_edge(1);
+  model::Settings settings = test::thesis_settings(5, dt);
+  settings.impulse.contacts = contacts;
+  World world(settings);
+  world.set_default_material(test::surface_material(0.3, 0.3));
+  BodyDescription body;
+  body.shape = world.add_shape(shape);
+  body.mass = 1.0;
+  Random random(seed);
+  for (int i = 0; i < 4; ++i) {
+    const double x = random.uniform(-0.15, 0.15);
+    const double y = random.uniform(-0.15, 0.15);
+    body.com_position = extent * Vec3(x, y, 0.7 + 1.05 * i);
+    body.X_WM.q = random.rotation();
+    random.unit_vector();  // the experiment's perturbation
+    world.add_body(body);
+  }
+  world.add_plane({});
+  std::vector<Vec3> centres;
+  for (int k = 1; k <= 50; ++k) {
+    world.run_until(k / 50.0);
+    for (model::BodyIndex i = 0; i < 4; ++i) centres.push_back(world.bodies().x_W[i] / extent);
+  }
+  return centres;
+}
+
+TEST(PileError, ApparentContactsStayAsNearToAllContactsAsErratum47Says) {
+  // Definition pile-error: against all contacts at dt = 1/1000, median over 8 seeds, in extents.
+  std::vector<double> errors;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const auto reference = falling_centres(seed, 1e-3, ContactTreatment::all);
+    const auto apparent = falling_centres(seed, 1e-2, ContactTreatment::apparent);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < reference.size(); ++k) sum += (apparent[k] - reference[k]).norm();
+    errors.push_back(sum / static_cast<double>(reference.size()));
+  }
+  std::sort(errors.begin(), errors.end());
+  const double median = 0.5 * (errors[3] + errors[4]);
+  RecordProperty("median_error", std::to_string(median));
+  EXPECT_LE(median, 0.038);
 }
 
 TEST(Bounce, BallFollowsTheGoldenBounces) {

@@ -157,8 +157,6 @@ TEST(Apparent, MomentumIsConservedBetweenTwoBodies) {
   }
 }
 
-// Fig. 5-5: one contact at the apparent point, not spread back, cannot slow a body that spins about
-// the normal. Exists only here.
 TEST(Apparent, EveryFaceOfAContainerHasAPointOfItsOwn) {
   // A cube flies into the corner of a floor and a wall, e = 0: one apparent contact for both would
   // push along the mean of all normals and leave it moving; one for each stops it.
@@ -194,6 +192,8 @@ TEST(Apparent, EveryFaceOfAContainerHasAPointOfItsOwn) {
   }
 }
 
+// Fig. 5-5: one contact at the apparent point, not spread back, cannot slow a body that spins about
+// the normal. Exists only here.
 TEST(Apparent, WithoutSpreadingBackASpinningCubeSpinsForEver) {
   test::ContactScene scene;
   scene.surface(0.0, 0.3);

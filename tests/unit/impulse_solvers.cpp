@@ -101,6 +101,51 @@ TEST(Solvers, AgreeOnRandomIslands) {
   RecordProperty("exact_iterations_max", most_iterations);
 }
 
+TEST(Solvers, IterativeTakesHardlyMoreSweepsForLargeIslands) {
+  const auto mean_sweeps = [](std::size_t bodies) {
+    Random random(21);
+    double sum = 0.0;
+    for (int trial = 0; trial < 10; ++trial) {
+      const ConeProblem problem = test::random_island(random, bodies, 4 * bodies, 0.3, 1e-9);
+      ConeSolution solution;
+      GaussSeidelSolver().solve(problem, nullptr, 1e-6, 20000, solution);
+      EXPECT_TRUE(solution.converged) << bodies << " trial " << trial;
+      sum += solution.iterations;
+    }
+    return sum / 10.0;
+  };
+  const double small = mean_sweeps(100);
+  const double large = mean_sweeps(1000);
+  RecordProperty("sweeps_100_bodies", std::to_string(small));
+  RecordProperty("sweeps_1000_bodies", std::to_string(large));
+  EXPECT_LE(large, 1.2 * small);
+}
+
+TEST(Sweeps, PartsAreWhatIsUnsolvedAndItsNeighbours) {
+  // A chain of ten bodies, each in touch with the next; solved but for one contact.
+  ConeProblem problem;
+  problem.clear();
+  problem.blocks = 10;
+  problem.y_free.setZero(60);
+  for (std::uint32_t b = 0; b < 9; ++b) {
+    Jacobian J = Jacobian::Zero();
+    J.leftCols<3>().setIdentity();
+    problem.couplings.push_back({b, J});
+    problem.couplings.push_back({b + 1, -J});
+    problem.first.push_back(static_cast<std::uint32_t>(problem.couplings.size()));
+    problem.bias.push_back(b == 4 ? Vec3(-1, 0, 0) : Vec3::Zero());
+    problem.friction.push_back(0.0);
+  }
+  ConeSolution solution;
+  solution.p.assign(9, Vec3::Zero());
+  solution.y = problem.y_free;
+  const std::vector<ContactSubset> parts = unsolved_parts(problem, solution, 0.1);
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].contacts, (std::vector<std::uint32_t>{3, 4, 5}));
+  EXPECT_EQ(parts[0].blocks, (std::vector<std::uint32_t>{3, 4, 5, 6}));
+  EXPECT_TRUE(unsolved_parts(problem, solution, 2.0).empty());
+}
+
 TEST(Solvers, ExactSolvesIslandsOfManyBodiesAndRedundantContacts) {
   Random random(5);
   int most_iterations = 0;

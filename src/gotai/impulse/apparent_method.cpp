@@ -22,7 +22,7 @@ void ApparentMethod::prepare(const model::BodyState& bodies, const model::Contac
   contacts_ = &contacts;
   dt_ = plan.dt;
   read_targets(bodies, contacts, materials, targets_);
-  islands_ = find_islands(bodies, contacts);
+  find_islands(bodies, contacts, islands_);
   find_patches(bodies);
 }
 
@@ -52,9 +52,9 @@ void ApparentMethod::find_weights(const model::BodyState& bodies, const std::vec
   bias_.resize(contacts_->size());
   apparent_.clear();
   for (const model::ContactPair& pair : patches_) {
+    const RelativeMotion motion(bodies, pair);
     for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
-      v_star_[i] =
-          contacts_->normal_W[i].dot(relative_velocity(bodies, pair, contacts_->point_W[i]));
+      v_star_[i] = motion.along(contacts_->normal_W[i], contacts_->point_W[i]);
       bias_[i] = row_bias(targets_.approach[i], v_star_[i], gap[i], targets_.restitution[i], dt_,
                           settings_.gravity.norm());
     }

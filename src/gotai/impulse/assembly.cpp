@@ -16,9 +16,9 @@ void read_targets(const model::BodyState& bodies, const model::ContactSet& conta
   for (const model::ContactPair& pair : contacts.pairs) {
     const model::SurfacePair surface =
         materials.combine(bodies.material[pair.body_a], bodies.material[pair.body_b]);
+    const RelativeMotion motion(bodies, pair);
     for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
-      targets.approach[i] =
-          contacts.normal_W[i].dot(relative_velocity(bodies, pair, contacts.point_W[i]));
+      targets.approach[i] = motion.along(contacts.normal_W[i], contacts.point_W[i]);
       targets.restitution[i] = surface.restitution;
       targets.friction[i] = surface.friction;
     }
@@ -77,14 +77,14 @@ void assemble(const model::BodyState& bodies, const model::ContactSet& contacts,
   problem.patch.push_back(0);
   for (const std::uint32_t k : island.pairs) {
     const model::ContactPair& pair = contacts.pairs[k];
+    const RelativeMotion motion(bodies, pair);
     for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
       frame.push_back(contact_frame(contacts.normal_W[i]));
       couple(pair.body_a, i, 1.0);
       couple(pair.body_b, i, -1.0);
       problem.first.push_back(static_cast<std::uint32_t>(problem.couplings.size()));
 
-      const double v_star =
-          contacts.normal_W[i].dot(relative_velocity(bodies, pair, contacts.point_W[i]));
+      const double v_star = motion.along(contacts.normal_W[i], contacts.point_W[i]);
       Vec3 bias = Vec3::Zero();
       bias.x() = row_bias(targets.approach[i], v_star, gap[i], targets.restitution[i], dt, gravity);
       // Bodies that impulses do not move have no block; their motion (kinematic) is part of the

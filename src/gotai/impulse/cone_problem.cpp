@@ -8,7 +8,6 @@ namespace gotai::impulse {
 
 void ConeProblem::clear() {
   blocks = 0;
-  y_free.resize(0);
   first.assign(1, 0);
   couplings.clear();
   bias.clear();

@@ -42,7 +42,7 @@ struct ConeProblem {
   std::vector<std::uint32_t> patch;  ///< patches (pairs) as contact ranges: [patch[k], patch[k+1])
 
   std::size_t size() const { return bias.size(); }
-  /// Empties it; storage is kept.
+  /// Empties it, but y_free, which is sized with the blocks; storage is kept.
   void clear();
   /// c_i = J_i y + bias_i [m/s].
   Vec3 velocity(std::size_t i, const Eigen::VectorXd& y) const;

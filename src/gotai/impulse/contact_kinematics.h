@@ -12,6 +12,23 @@ namespace gotai::impulse {
 Vec3 relative_velocity(const model::BodyState& bodies, const model::ContactPair& pair,
                        const Vec3& point_W);
 
+/// How a moves relative to b, both rigid: for many contacts of one pair.
+struct RelativeMotion {
+  Vec3 origin_W;  ///< a's centre of mass [m]
+  Vec3 v_W;       ///< of a's material point there relative to b's [m/s]
+  Vec3 w_W;       ///< [rad/s]
+
+  RelativeMotion(const model::BodyState& bodies, const model::ContactPair& pair)
+      : origin_W(bodies.x_W[pair.body_a]),
+        v_W(relative_velocity(bodies, pair, origin_W)),
+        w_W(bodies.w_W[pair.body_a] - bodies.w_W[pair.body_b]) {}
+
+  /// The same as direction . relative_velocity() at a point [m/s].
+  double along(const Vec3& direction_W, const Vec3& point_W) const {
+    return direction_W.dot(v_W) + w_W.dot((point_W - origin_W).cross(direction_W));
+  }
+};
+
 /// An orthonormal frame whose first column is the given unit vector; the same for equal input.
 Mat3 contact_frame(const Vec3& normal_W);
 

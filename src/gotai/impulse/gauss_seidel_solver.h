@@ -10,18 +10,21 @@
 
 namespace gotai::impulse {
 
-/// Solves a ConeProblem by two kinds of sweeps in fixed order, in rounds:
-///   contact sweeps  normal, then tangents of one contact after the other, all others at rest:
-///   cheap,
-///                   twice as many in every round;
+/// Solves a ConeProblem in rounds of three kinds of work, in fixed order, each as long as it pays:
+///   contact sweeps  accelerated, one contact after the other (ContactSweeps): cheap. After the
+///                   first sweeps only the parts of the island that are not solved yet;
 ///   patch sweeps    all contacts of a pair together, exactly (NewtonSolver): redundant contacts of
-///                   one patch make contact sweeps crawl and leave the load where it first fell; a
-///                   patch sweep shares it evenly by the same compliance as the exact solver.
+///                   one patch make contact sweeps crawl and leave the load where it first fell;
+///                   the first patch sweep shares it evenly by the same compliance as the exact
+///                   solver;
+///   exact parts     where both get stuck, the bodies of a small unsolved part together
+///                   (solve_exact), pushed by the contacts outside as they are.
 class GaussSeidelSolver {
  public:
   /// @param guess       impulses to start from, or nothing
   /// @param limit       residual to reach [m/s]
-  /// @param max_sweeps  gives up after so many; solution.converged tells
+  /// @param max_sweeps  gives up after so many: sweeps over all contacts, or as many contacts in
+  ///                    parts, and over all patches; solution.converged tells
   void solve(const ConeProblem& problem, const std::vector<Vec3>* guess, double limit,
              int max_sweeps, ConeSolution& solution);
 

@@ -38,7 +38,7 @@ void IslandSolver::prepare(const model::BodyState& bodies, const model::ContactS
                            const model::ContactMemory& memory) {
   contacts_ = &contacts;
   recall(memory, contacts, warm_impulse_);
-  islands_ = find_islands(bodies, contacts);
+  find_islands(bodies, contacts, islands_);
   work_.resize(std::max(work_.size(), islands_.size()));
 }
 

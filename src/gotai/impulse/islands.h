@@ -16,6 +16,8 @@ struct Island {
 };
 
 /// Islands in the order of their first pair. Pairs without a dynamic body are left out.
-std::vector<Island> find_islands(const model::BodyState& bodies, const model::ContactSet& contacts);
+/// @param[out] islands  storage is reused
+void find_islands(const model::BodyState& bodies, const model::ContactSet& contacts,
+                  std::vector<Island>& islands);
 
 }  // namespace gotai::impulse

@@ -9,9 +9,10 @@ namespace gotai::impulse {
 
 /// f = sum_i (-k x_i - c v_i) n_i / n over the n contacts of a pair that overlap. The user gives
 /// the restitution; c follows from it by (2.2), and k = m w^2 from the step and the allowed
-/// penetration:
+/// penetration (impulse.penetration, of the smallest bounding radius):
 ///   w = max(pi / dt, sqrt(|g| / penetration)),
-/// so that a collision lasts one step or less and a resting body sinks no deeper than allowed.
+/// so that a collision lasts one step or less and a resting body sinks no deeper than allowed. The
+/// damper may pull at the end of a contact when impulse.tension says so.
 ///
 /// Reads every contact, also those that come to touch within the step.
 /// Guarantees: the same stiffness at every level (k and c are divided by the number of contacts);
