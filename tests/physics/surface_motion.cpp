@@ -150,5 +150,77 @@ TEST(SurfaceSlide, ABlockOnARotatedInclineFallsAsFastAsItShould) {
   std::printf("incline: acceleration off by at most %.5f %%\n", 100.0 * worst);
 }
 
+// Five metres down 20 degrees: friction brakes, and neither turns the block nor leads it aside.
+TEST(SurfaceSlide, ABlockWithFrictionGoesStraightDown) {
+  const double angle = 20.0 * M_PI / 180.0;
+  const double friction = 0.2;
+  const Quat tilt = about(Vec3::UnitY(), angle);
+  const auto block = surface_box(Vec3(1, 1, 1), 5);
+  const auto ramp = surface_box(Vec3(16, 16, 1), 5);
+  const double exact = std::sqrt(10.0 / (9.8 * (std::sin(angle) - friction * std::cos(angle))));
+  for (const bool on_mesh : {false, true}) {
+    for (const double yaw : {0.0, 0.3}) {
+      World world =
+          surface_world(friction, 1.0 / 100.0, SolverName::substepped, ContactTreatment::reduced);
+      if (on_mesh) {
+        add(world, ramp, tilt * Vec3(0, 0, -0.5), tilt, model::BodyKind::fixed);
+      } else {
+        PlaneDescription plane;
+        plane.normal = tilt * Vec3::UnitZ();
+        world.add_plane(plane);
+      }
+      const BodyId body = add(world, block, tilt * Vec3(-4, 0, 0.5),
+                              tilt * about(Vec3::UnitZ(), yaw), model::BodyKind::dynamic);
+      const auto place = [&] {
+        return Vec3(tilt.conjugate() * world.bodies().x_W[world.index(body)]);
+      };
+      while (place().x() < 1.0 && world.time() < 4.0) world.step();
+      const Quat q = tilt.conjugate() * world.bodies().q_WB[world.index(body)];
+      const double turned = 2.0 * std::atan2(q.z(), q.w()) - yaw;
+      std::printf("%s, yaw %.1f: %.3f s (exact %.3f), %.5f m aside, turned by %.3f degrees\n",
+                  on_mesh ? "mesh" : "plane", yaw, world.time(), exact, place().y(),
+                  turned * 180.0 / M_PI);
+      EXPECT_NEAR(world.time(), exact, 0.01 * exact);
+      EXPECT_LE(std::abs(place().y()), 5e-3);
+      EXPECT_LE(std::abs(turned), 0.05);
+    }
+  }
+}
+
+// A thin disc under even pressure goes on spinning and sliding at v = 0.653 R w until it stops
+// [Farkas et al. 2003, "Frictional coupling between sliding and spinning motion"]. With friction
+// that does not oppose the slip it would stop with 0.27.
+TEST(SurfaceSlide, ADiscSpinsAndSlidesTogether) {
+  constexpr double kRatio = 0.653;
+  geometry::GeneratorOptions options;
+  options.shape = "disc";
+  options.thickness = 0.025;
+  options.subdivisions = 12;
+  voxel::ShapeOptions how;
+  how.prepared_level = 7;
+  how.surface_level = 6;
+  const auto disc = std::make_shared<const voxel::Shape>(
+      voxel::make_shape("disc", geometry::generate(options), how));
+  World world = surface_world(0.3, 1.0 / 200.0, SolverName::substepped, ContactTreatment::all);
+  world.add_plane({});
+  constexpr double kSpin = 10.0;
+  constexpr double kRadius = 0.5;
+  const BodyId id = add(world, disc, Vec3(0, 0, 0.0125), Quat::Identity(), model::BodyKind::dynamic,
+                        Vec3(kRatio * kRadius * kSpin, 0, 0), Vec3(0, 0, kSpin));
+  double speed = kRatio * kRadius * kSpin;
+  const double slow = 0.05 * speed;
+  double worst = 0.0;
+  while (speed > slow && world.time() < 4.0) {
+    world.step();
+    speed = world.bodies().v_W[world.index(id)].norm();
+    const double ratio = speed / (kRadius * world.bodies().w_W[world.index(id)].z());
+    worst = std::max(worst, std::abs(ratio / kRatio - 1.0));
+  }
+  std::printf("disc: v / (R w) off by at most %.2f %%, stops after %.3f s\n", 100.0 * worst,
+              world.time());
+  EXPECT_LE(worst, 0.05);
+  EXPECT_LE(speed, slow);
+}
+
 }  // namespace
 }  // namespace gotai

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "gotai/geometry/generate.h"
@@ -69,6 +70,60 @@ TEST_P(DeepOverlap, PartsWithoutABang) {
 INSTANTIATE_TEST_SUITE_P(Shapes, DeepOverlap,
                          testing::Values("cube", "sphere", "hexapod", "torus", "rock"),
                          [](const auto& shape) { return std::string(shape.param); });
+
+// How often one ring passes through another, with signs: the centre line of the second through the
+// disc of the first.
+int linking_number(const Pose& first, const Pose& second, double radius) {
+  constexpr int kSteps = 360;
+  const auto at = [&](int k) {
+    const double angle = 2.0 * M_PI * k / kSteps;
+    return Vec3(first.inverse() *
+                (second * Vec3(radius * std::cos(angle), radius * std::sin(angle), 0)));
+  };
+  int number = 0;
+  for (int k = 0; k < kSteps; ++k) {
+    const Vec3 from = at(k);
+    const Vec3 to = at(k + 1);
+    if ((from.z() < 0.0) == (to.z() < 0.0)) continue;
+    const Vec3 crossing = from + from.z() / (from.z() - to.z()) * (to - from);
+    if (crossing.norm() < radius) number += to.z() < 0.0 ? -1 : 1;
+  }
+  return number;
+}
+
+TEST(Chain, TenLinksHangForHalfAMinute) {
+  constexpr int kLinks = 11;  // the first is fixed
+  constexpr double kRing = 0.5 / 1.3;
+  constexpr double kTube = 0.3 * kRing;
+  World world = world_with(Vec3(0, 0, -9.81));
+  const ShapeId id = world.add_shape(shape_of("torus"));
+  for (int k = 0; k < kLinks; ++k) {
+    BodyDescription link;
+    link.shape = id;
+    link.kind = k == 0 ? model::BodyKind::fixed : model::BodyKind::dynamic;
+    link.X_WM.p = Vec3(0, 0, -1.96 * (kRing - kTube) * k);
+    link.X_WM.q = Quat(Eigen::AngleAxisd(0.5 * M_PI, k % 2 == 0 ? Vec3::UnitX() : Vec3::UnitY()));
+    if (k == kLinks - 1) link.velocity = Vec3(1.0, 0.5, 0.0);
+    world.add_body(link);
+  }
+  const auto numbers = [&] {
+    std::vector<int> all;
+    for (int i = 0; i < kLinks; ++i) {
+      for (int j = i + 1; j < kLinks; ++j) {
+        all.push_back(linking_number(world.mesh_pose(world.id(static_cast<model::BodyIndex>(i))),
+                                     world.mesh_pose(world.id(static_cast<model::BodyIndex>(j))),
+                                     kRing));
+      }
+    }
+    return all;
+  };
+  const std::vector<int> start = numbers();
+  EXPECT_EQ(std::ranges::count_if(start, [](int n) { return n != 0; }), kLinks - 1);
+  while (world.time() < 30.0) {
+    for (int k = 0; k < 60; ++k) world.step();
+    ASSERT_EQ(numbers(), start) << world.time();
+  }
+}
 
 }  // namespace
 }  // namespace gotai

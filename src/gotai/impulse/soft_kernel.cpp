@@ -116,7 +116,10 @@ HWY_INLINE V normal_velocity(std::size_t l, const ContactRow& row, const Motion&
          dot(load(row.j_b, l), m.w_b);
 }
 
-/// Friction of the lanes in `active`: the exact 2x2 stick solution, then onto the cone.
+/// Friction of the lanes in `active`: the exact 2x2 stick solution where that is in the cone. Else
+/// a step against the slip, the same along both tangents, then onto the cone: friction must oppose
+/// the slip, and the stick solution's direction does not where contacts turn the bodies more easily
+/// than they shift them.
 template <typename Mask>
 HWY_INLINE void solve_friction(const PairBatch& batch, std::size_t l, ContactRow& row,
                                const Mask& active, Motion& m) {
@@ -130,17 +133,19 @@ HWY_INLINE void solve_friction(const PairBatch& batch, std::size_t l, ContactRow
   const V k12 = load(row.k12, l);
   const V old_1 = load(row.p_1, l);
   const V old_2 = load(row.p_2, l);
-  V p_1 = old_1 - (load(row.k11, l) * s1 + k12 * s2);
-  V p_2 = old_2 - (k12 * s1 + load(row.k22, l) * s2);
+  const V stick_1 = old_1 - (load(row.k11, l) * s1 + k12 * s2);
+  const V stick_2 = old_2 - (k12 * s1 + load(row.k22, l) * s2);
   const V limit = load(batch.friction, l) * load(row.p_n, l);
-  const V length_squared = p_1 * p_1 + p_2 * p_2;
-  const auto slides = hn::Gt(length_squared, limit * limit);
+  const auto slides = hn::Gt(stick_1 * stick_1 + stick_2 * stick_2, limit * limit);
+  const V mass = load(row.mass_t, l);
+  const V slide_1 = old_1 - mass * s1;
+  const V slide_2 = old_2 - mass * s2;
+  const V length_squared = slide_1 * slide_1 + slide_2 * slide_2;
   const Tag d;
   const V tiny = hn::Set(d, 1e-30F);
-  const V scale =
-      hn::IfThenElse(slides, limit / hn::Sqrt(hn::Max(length_squared, tiny)), hn::Set(d, 1.0F));
-  p_1 = hn::IfThenElse(active, p_1 * scale, old_1);
-  p_2 = hn::IfThenElse(active, p_2 * scale, old_2);
+  const V scale = hn::Min(limit / hn::Sqrt(hn::Max(length_squared, tiny)), hn::Set(d, 1.0F));
+  const V p_1 = hn::IfThenElse(active, hn::IfThenElse(slides, slide_1 * scale, stick_1), old_1);
+  const V p_2 = hn::IfThenElse(active, hn::IfThenElse(slides, slide_2 * scale, stick_2), old_2);
   store(p_1, row.p_1, l);
   store(p_2, row.p_2, l);
   const V d_1 = p_1 - old_1;

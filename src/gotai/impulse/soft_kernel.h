@@ -62,6 +62,7 @@ struct ContactRow {
   Lane gap;                        ///< [m]; written by advance_gaps
   Lane mass_n;                     ///< 1 / (n . K n) [kg]
   Lane k11, k12, k22;              ///< inverse of the 2x2 tangential K [kg]
+  Lane mass_t;                     ///< 1 / mean of K's diagonal [kg]
   Lane p_n, p_1, p_2;              ///< impulses of the present sub-step [N s]; state of the sweeps
   Lane total_n, total_1, total_2;  ///< summed over the sub-steps [N s]
   Lane approach;                   ///< normal velocity before the step [m/s]

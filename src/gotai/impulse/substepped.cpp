@@ -1,12 +1,12 @@
 #include "gotai/impulse/substepped.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <tuple>
 
 #include "gotai/core/parallel.h"
+#include "gotai/impulse/lanes.h"
 
 namespace gotai::impulse {
 namespace {
@@ -46,24 +46,6 @@ void for_batches(std::size_t begin, std::size_t end, const Kernel& kernel) {
     const std::size_t first = begin + g * kBatchGrain;
     kernel(first, std::min(kBatchGrain, end - first));
   });
-}
-
-void set(Lane& lane, std::size_t l, double v) { lane.value[l] = static_cast<float>(v); }
-void set(Lane3& lanes, std::size_t l, const Vec3& v) {
-  set(lanes.x, l, v.x());
-  set(lanes.y, l, v.y());
-  set(lanes.z, l, v.z());
-}
-void set(LaneInertia& lanes, std::size_t l, const Mat3& m) {
-  set(lanes.xx, l, m(0, 0));
-  set(lanes.xy, l, m(0, 1));
-  set(lanes.xz, l, m(0, 2));
-  set(lanes.yy, l, m(1, 1));
-  set(lanes.yz, l, m(1, 2));
-  set(lanes.zz, l, m(2, 2));
-}
-Vec3 get(const Lane3& lanes, std::size_t l) {
-  return {lanes.x.value[l], lanes.y.value[l], lanes.z.value[l]};
 }
 
 /// A unit vector across n that turns smoothly with it on each side of the switch.
@@ -215,6 +197,7 @@ void SubsteppedConstraint::fill_rows(const model::BodyState& bodies) {
       set(row.k11, l, k_22 / determinant);
       set(row.k12, l, -k_12 / determinant);
       set(row.k22, l, k_11 / determinant);
+      set(row.mass_t, l, 2.0 / (k_11 + k_22));
       const Vec3 v = bodies.v_W[a] - bodies.v_W[b];
       set(row.approach, l, n.dot(v) + j_a.dot(bodies.w_W[a]) - j_b.dot(bodies.w_W[b]));
     }
@@ -242,78 +225,6 @@ void SubsteppedConstraint::load_warm_start(const model::ContactMemory& memory) {
       set(row.p_1, l, entry.impulse_W.dot(t1));
       set(row.p_2, l, entry.impulse_W.dot(n.cross(t1)));
     }
-}
-
-namespace {
-
-/// Does any contact slide faster than friction could stop within the step?
-bool is_sliding(const model::BodyState& bodies, const model::ContactSet& contacts,
-                const model::ContactPair& pair, double stopping_speed) {
-  const model::BodyIndex a = pair.body_a;
-  const model::BodyIndex b = pair.body_b;
-  for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-    const Vec3& x = contacts.friction_W[c];
-    const Vec3& n = contacts.normal_W[c];
-    const Vec3 v = bodies.v_W[a] + bodies.w_W[a].cross(x - bodies.x_W[a]) - bodies.v_W[b] -
-                   bodies.w_W[b].cross(x - bodies.x_W[b]);
-    if ((v - n.dot(v) * n).norm() > stopping_speed) return true;
-  }
-  return false;
-}
-
-}  // namespace
-
-void SubsteppedConstraint::share_loads(const model::BodyState& bodies) {
-  const double stopping_speed = settings_.gravity.norm() * plan_.dt;
-  parallel_for(contacts_->pairs.size(), kPairGrain, [&](std::size_t p) {
-    const model::ContactPair& pair = contacts_->pairs[p];
-    if (pair.size() >= 3 && is_sliding(bodies, *contacts_, pair, stopping_speed)) share_load(pair);
-  });
-}
-
-void SubsteppedConstraint::share_load(const model::ContactPair& pair) {
-  using Vec6 = Eigen::Matrix<double, 6, 1>;
-  using Mat6 = Eigen::Matrix<double, 6, 6>;
-  Vec3 center = Vec3::Zero();
-  double area = 0.0;
-  for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-    center += contacts_->area[c] * contacts_->point_W[c];
-    area += contacts_->area[c];
-  }
-  center /= area;
-  double radius = 0.0;
-  for (std::uint32_t c = pair.begin; c < pair.end; ++c)
-    radius = std::max(radius, (contacts_->point_W[c] - center).norm());
-  if (!(radius > 0.0)) return;
-
-  // Unit wrench of a contact about the patch's centre, moments in units of its radius.
-  const auto wrench = [&](std::uint32_t c) {
-    Vec6 unit;
-    unit << contacts_->normal_W[c],
-        (contacts_->point_W[c] - center).cross(contacts_->normal_W[c]) / radius;
-    return unit;
-  };
-  Mat6 gram = Mat6::Zero();
-  Vec6 total = Vec6::Zero();
-  for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-    const Vec6 unit = wrench(c);
-    gram.noalias() += (contacts_->area[c] / area) * unit * unit.transpose();
-    total += static_cast<double>(rows_[slots_[c].row].p_n.value[slots_[c].lane]) * unit;
-  }
-  gram.diagonal().array() += 1e-6;
-  const Vec6 share = gram.ldlt().solve(total) / area;
-  // As far towards even as no contact has to pull: mixtures of equal wrench have equal wrench.
-  double mix = 1.0;
-  for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-    const double even = contacts_->area[c] * wrench(c).dot(share);
-    const double now = rows_[slots_[c].row].p_n.value[slots_[c].lane];
-    if (even < 0.0) mix = std::min(mix, now / (now - even));
-  }
-  for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-    float& p = rows_[slots_[c].row].p_n.value[slots_[c].lane];
-    const double even = contacts_->area[c] * wrench(c).dot(share);
-    p = static_cast<float>(std::max(0.0, p + mix * (even - p)));
-  }
 }
 
 void SubsteppedConstraint::read_velocities(const model::BodyState& bodies) {

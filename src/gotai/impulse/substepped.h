@@ -53,6 +53,9 @@ class SubsteppedConstraint final : public ImpulseMethod {
   /// disturb what the solver has found, and piles would creep.
   void share_loads(const model::BodyState& bodies);
   void share_load(const model::ContactPair& pair);
+  /// Shifts a sliding pair's friction so that its centre is that of the pressure: the points that
+  /// friction acts at stand for areas, and under uneven pressure they would turn the body.
+  void centre_friction(const model::ContactPair& pair);
   /// Calls kernel(first batch, count): wave after wave, the batches of one on any thread. They
   /// share no dynamic body, so the bits do not depend on the threads.
   template <typename Kernel>
