@@ -49,6 +49,12 @@ TEST(Compare, RunsEveryMethodAndMeasuresAgainstTheExactOne) {
     EXPECT_EQ(row.at("failure"), "") << row.at("method");
     EXPECT_NEAR(row.at("simulated_s"), 0.3, 1e-9);
     EXPECT_GE(row.at("impulse_ms"), 0.0);
+    EXPECT_EQ(row.at("plastic_islands"), 0);
+    if (row.at("method") == "penalty") {
+      EXPECT_GT(row.at("substeps_max"), 1);
+    } else {
+      EXPECT_GE(row.at("substeps_max"), 1);
+    }
   }
   EXPECT_GT(rows[3].at("energy_final"), rows[0].at("energy_final"))
       << "superposed impulses explode";

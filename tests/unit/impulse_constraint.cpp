@@ -240,6 +240,30 @@ TEST_P(Constraint, SlidingSphereBeginsToRollAtFiveSeventhsOfItsSpeed) {
   EXPECT_LE(std::abs(slip()), 1e-7);
 }
 
+TEST(Plastic, ABodyBetweenTwoWallsCannotBounceAndIsCounted) {
+  // It touches both: the wall that it hits asks for v' <= -e v, the other one for v' >= 0.
+  for (const double friction : {0.0, 0.5}) {
+    for (const double e : {0.0, 0.5}) {
+      test::ContactScene scene;
+      scene.surface(e, friction);
+      const auto body =
+          scene.add_body(1.0, Mat3::Identity(), Vec3::Zero(), Vec3(1, 0, 0), Vec3::Zero());
+      const auto walls =
+          scene.add_body(0.0, Mat3::Identity(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero());
+      scene.begin_pair(body, walls);
+      scene.add_contact(Vec3(-0.5, 0, 0), Vec3::UnitX());
+      scene.add_contact(Vec3(0.5, 0, 0), -Vec3::UnitX());
+      const model::SolveReport report = scene.strike(
+          *make_method(test::method_settings(model::ImpulseMethodName::constraint,
+                                             model::ContactTreatment::all, SolverName::exact)),
+          1e-3);
+      EXPECT_EQ(report.plastic_islands, e > 0.0 ? 1U : 0U) << e << " " << friction;
+      EXPECT_LE(report.residual, 1e-8);
+      EXPECT_LE(scene.bodies.v_W[body].norm(), 1e-8);
+    }
+  }
+}
+
 TEST(Assembly, RowBiasFollowsTheGap) {
   // touching: e of the approach before gravity, nothing for separating contacts
   EXPECT_DOUBLE_EQ(row_bias(-2.0, -2.1, 0.0, 0.5, 0.01, 9.8), -1.0);
