@@ -18,7 +18,8 @@ class SmoothNoise {
   explicit SmoothNoise(std::uint64_t seed) {
     Random random(seed);
     for (Wave& wave : waves_) {
-      wave.k = random.unit_vector() * random.uniform(2.0, 5.0);
+      const double wave_number = random.uniform(2.0, 5.0);  // drawn first, with every compiler
+      wave.k = wave_number * random.unit_vector();
       wave.phase = random.uniform(0.0, 2.0 * std::numbers::pi);
     }
   }

@@ -142,6 +142,7 @@ void require_content(const std::string& path) {
 
 /// HDF5's older structures have no checksums, and damaged ones can crash it.
 void write_with_checksums(hid_t file) {
+  const HeldFlushes held;  // the call flushes, but nothing is recorded yet
   H5Fset_libver_bounds(file, H5F_LIBVER_V110, H5F_LIBVER_V110);
 }
 

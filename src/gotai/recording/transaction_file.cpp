@@ -35,6 +35,7 @@ struct JournalHeader {
 };
 
 thread_local std::string failure;
+thread_local int held = 0;  // living HeldFlushes
 
 bool fail_with_errno(const char* what) {
   failure = std::string(what) + ": " + std::strerror(errno);
@@ -130,16 +131,12 @@ const TransactionFile& self(const H5FD_t* file) {
   return *reinterpret_cast<const TransactionFile*>(file);
 }
 
-bool commit(TransactionFile& file) {
-  if (file.broken) return false;
-  const std::uint64_t pages = file.pending.empty()
-                                  ? file.stored_pages
-                                  : std::max(file.stored_pages, file.pending.rbegin()->first + 1);
+/// Puts the pages behind the stored ones in their place, where nothing refers to them yet.
+bool append_new_pages(TransactionFile& file, std::uint64_t end) {
   const auto first_new = file.pending.lower_bound(file.stored_pages);
-  // Holes are filled: a page that exists can be overwritten on a full disk.
   static constexpr Page kZeros{};
   auto next = first_new;
-  for (std::uint64_t number = file.stored_pages; number < pages; ++number) {
+  for (std::uint64_t number = file.stored_pages; number < end; ++number) {
     const bool given = next != file.pending.end() && next->first == number;
     const Page& page = given ? (next++)->second : kZeros;
     if (!write_all(file.fd, page.data(), kPage, number * kPage)) {
@@ -147,6 +144,20 @@ bool commit(TransactionFile& file) {
     }
   }
   file.pending.erase(first_new, file.pending.end());
+  return true;
+}
+
+bool commit(TransactionFile& file) {
+  if (file.broken) return false;
+  // HDF5 allocates what it never writes, and refuses a file that is shorter than that.
+  const std::uint64_t pages = std::max(file.stored_pages, (file.end + kPage - 1) / kPage);
+  // Holes are filled: a page that exists can be overwritten on a full disk.
+  if (file.stored_pages == 0) {
+    // The first pages come through the journal, too: a part of them would be no file.
+    for (std::uint64_t number = 0; number < pages; ++number) file.pending.try_emplace(number);
+  } else if (!append_new_pages(file, pages)) {
+    return false;
+  }
   if (!file.pending.empty()) {
     if (!write_journal(file.journal, file.pending)) {
       fail_with_errno("writing the journal failed");
@@ -258,7 +269,7 @@ herr_t write_bytes(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t address, std::size_t
 
 herr_t flush_file(H5FD_t* base, hid_t, hbool_t) {
   TransactionFile& file = self(base);
-  if (file.broken) return 0;
+  if (file.broken || held > 0) return 0;
   if (commit(file)) return 0;
   file.broken = true;
   file.pending.clear();
@@ -337,5 +348,8 @@ std::int64_t make_transaction_access() {
 }
 
 const std::string& transaction_failure() { return failure; }
+
+HeldFlushes::HeldFlushes() { ++held; }
+HeldFlushes::~HeldFlushes() { --held; }
 
 }  // namespace gotai::recording

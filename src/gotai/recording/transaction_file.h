@@ -32,4 +32,13 @@ std::int64_t make_transaction_access();
 /// After a failed flush the driver drops all further writes: the file stays as it was.
 const std::string& transaction_failure();
 
+/// While one lives, flushes of this thread commit nothing: what was written waits for the next one.
+class HeldFlushes {
+ public:
+  HeldFlushes();
+  ~HeldFlushes();
+  HeldFlushes(const HeldFlushes&) = delete;
+  HeldFlushes& operator=(const HeldFlushes&) = delete;
+};
+
 }  // namespace gotai::recording
