@@ -43,7 +43,7 @@ void set_mass(BodyState& bodies, BodyIndex index, double mass, const Mat3& I_B) 
     throw InvalidArgument("mass", std::to_string(mass), "must be positive and finite [kg]");
   const Mat3 symmetric = 0.5 * (I_B + I_B.transpose());
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(symmetric);
-  const Vec3 moments = eigen.eigenvalues();
+  const Vec3& moments = eigen.eigenvalues();
   if (!moments.allFinite() || !(moments.minCoeff() > 0.0))
     throw InvalidArgument("inertia", "smallest moment " + std::to_string(moments.minCoeff()),
                           "must be positive definite [kg m^2]");

@@ -16,14 +16,13 @@
 
 #include "gotai/core/error.h"
 
-extern char** environ;
-
 namespace gotai::render {
 namespace {
 
 /// Starts a program with its standard input from a pipe; returns the process.
 pid_t spawn(std::vector<std::string> arguments, int input) {
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;

@@ -126,11 +126,13 @@ class Tracer {
     Colour lit = Colour::Zero();  // sun and sky as these few samples see them
     bool mixed = false;           // are there several surfaces in this pixel?
     for (int s = 0; s < n * n; ++s) {
+      const int column = s % n;
+      const int row = s / n;
       const float px = static_cast<float>(x) +
-                       (static_cast<float>(s % n) + 0.5F) / static_cast<float>(n) -
+                       (static_cast<float>(column) + 0.5F) / static_cast<float>(n) -
                        0.5F * static_cast<float>(options_.width);
       const float py = static_cast<float>(y) +
-                       (static_cast<float>(s / n) + 0.5F) / static_cast<float>(n) -
+                       (static_cast<float>(row) + 0.5F) / static_cast<float>(n) -
                        0.5F * static_cast<float>(options_.height);
       const Vec3f direction = (forward_ + pixel_ * (px * right_ + py * down_)).normalized();
       const std::optional<Surface> surface = look(direction);
