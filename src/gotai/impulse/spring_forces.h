@@ -38,6 +38,7 @@ struct PairSpring {
 /// @param[in,out] velocities   of the bodies; other pairs' springs must read `before`
 /// @param before  velocities at the start of the sub-step
 /// @param[out] normal_impulse  per contact [N s]
+/// @param[in,out] contact_impulse  per contact, on body A, world frame [N s]
 /// @return number of active contacts
 std::uint32_t add_spring_impulses(const model::BodyState& bodies, const model::ContactSet& contacts,
                                   const model::ContactPair& pair, const PairSpring& spring,

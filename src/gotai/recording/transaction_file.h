@@ -7,6 +7,7 @@
 ///   1. writes new pages behind the end of the file, where nothing refers to them yet,
 ///   2. writes changed pages to a journal beside the file, with a checksum,
 ///   3. copies them from there to their places, and empties the journal.
+/// All pages of the first flush go the way of the changed ones: a part of them would be no file.
 /// Whoever is killed before 2 is complete leaves the file as it was at the last flush; afterwards
 /// recover() finishes 3. The journal exists while the file is open for writing and is locked, so
 /// that two writers exclude each other.
