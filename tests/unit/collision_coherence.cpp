@@ -1,6 +1,7 @@
 // What searches remember of earlier steps makes them cheaper and changes no bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "gotai/collision/find_contacts.h"
@@ -102,6 +103,56 @@ TEST(Coherence, ChangesNoBitAndSavesMostOfTheSearchAtRest) {
                                            static_cast<double>(tests_at_rest)));
     EXPECT_LT(3 * tests_at_rest, fresh_tests_at_rest);
   }
+}
+
+// Contacts of pairs that moved less than the tolerance are nearly those of a new search.
+TEST(Anchors, AdvanceContactsAsSearchesFindThem) {
+  Heap heap;
+  model::CollisionSettings settings;
+  settings.model = model::CollisionModel::surface;
+  SearchOptions fresh{model::ContactTreatment::reduced, 1.0 / 60.0, {}};
+  SearchOptions anchored = fresh;
+  model::ContactAnchors anchors;
+  anchored.anchors = &anchors;
+  CollisionCache cache;
+  model::ContactSet found;
+  model::ContactSet advanced;
+  find_contacts(heap.bodies, heap.shapes, settings, 0.05, cache, advanced, anchored);
+  const model::ContactAnchors before = anchors;
+  ASSERT_GT(before.pairs.size(), 40U);
+  heap.move(2e-5, fresh.dt);
+  find_contacts(heap.bodies, heap.shapes, settings, 0.05, cache, advanced, anchored);
+  find_contacts(heap.bodies, heap.shapes, settings, 0.05, cache, found, fresh);
+  model::validate(advanced, heap.bodies.size());
+  std::size_t kept = 0;
+  for (std::size_t p = 0; p < before.pairs.size(); ++p) {
+    if (anchors.pairs[p].X_BA.p == before.pairs[p].X_BA.p) ++kept;
+  }
+  EXPECT_GT(10 * kept, 9 * before.pairs.size());
+  std::vector<double> errors;
+  std::size_t q = 0;
+  for (const model::ContactPair& pair : advanced.pairs) {
+    while (q < found.pairs.size() && std::pair(found.pairs[q].body_a, found.pairs[q].body_b) <
+                                         std::pair(pair.body_a, pair.body_b)) {
+      ++q;
+    }
+    if (q == found.pairs.size() || found.pairs[q].body_a != pair.body_a ||
+        found.pairs[q].body_b != pair.body_b) {
+      continue;
+    }
+    for (std::uint32_t i = pair.begin; i < pair.end; ++i) {
+      for (std::uint32_t k = found.pairs[q].begin; k < found.pairs[q].end; ++k) {
+        if (found.feature[k] != advanced.feature[i] || found.gap[k] < -0.01) continue;
+        const double error = std::abs(found.gap[k] - advanced.gap[i]);
+        EXPECT_LT(error, 1e-4);  // farther than that no pair has moved
+        errors.push_back(error);
+      }
+    }
+  }
+  // Not all are that near: a contact's normal is a mean over a cell, not the slope of its distance.
+  ASSERT_GT(errors.size(), 50U);
+  std::ranges::sort(errors);
+  EXPECT_LT(errors[errors.size() / 2], 3e-6) << "of motions of 4e-5";
 }
 
 }  // namespace

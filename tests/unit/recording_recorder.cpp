@@ -232,10 +232,19 @@ TEST(Checkpoint, DamageIsNoticed) {
   checkpoint.snapshot.q_WB = {Quat::Identity()};
   checkpoint.snapshot.v_W = checkpoint.snapshot.L_W = checkpoint.snapshot.w_W = {Vec3::Zero()};
   checkpoint.snapshot.memory.entries = {{1, 2, 99, Vec3(4, 5, 6)}};
+  const Vec3 one = Vec3::Ones();
+  const Quat turn(0.0, 1.0, 0.0, 0.0);
+  checkpoint.snapshot.anchors.pairs = {
+      {1, 2, {Vec3(7, 8, 9), turn}, 0.1, {{one, 2 * one, 3 * one, 4 * one, 0.5, 99}}},
+      {1, 3, {one, turn}, 0.2, {{one, one, one, one, 1.5, 5}, {one, one, one, 6 * one, 1.0, 7}}}};
   const std::vector<std::uint8_t> bytes = to_bytes(checkpoint);
   const Checkpoint back = from_bytes(bytes, "a.h5");
   EXPECT_EQ(back.snapshot.x_W[0], Vec3(1, 2, 3));
   EXPECT_EQ(back.snapshot.memory.entries[0].feature, 99u);
+  ASSERT_EQ(back.snapshot.anchors.pairs.size(), 2u);
+  EXPECT_EQ(back.snapshot.anchors.pairs[0].X_BA.q.coeffs(), turn.coeffs());
+  EXPECT_EQ(back.snapshot.anchors.pairs[1].reach, 0.2);
+  EXPECT_EQ(back.snapshot.anchors.pairs[1].contacts[1].friction_A, 6 * one);
   EXPECT_EQ(to_bytes(back), bytes);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     std::vector<std::uint8_t> bad = bytes;
@@ -243,6 +252,21 @@ TEST(Checkpoint, DamageIsNoticed) {
     EXPECT_THROW(from_bytes(bad, "a.h5"), FileError);
     bad.resize(i);
     EXPECT_THROW(from_bytes(bad, "a.h5"), FileError);
+  }
+}
+
+TEST(Checkpoint, AnotherFormatIsNamed) {
+  std::vector<std::uint8_t> bytes = to_bytes(Checkpoint{});
+  bytes.resize(bytes.size() - sizeof(Hash128));
+  bytes[0] = 1;
+  const Hash128 hash = Hasher().bytes(bytes.data(), bytes.size()).digest();
+  const auto* begin = reinterpret_cast<const std::uint8_t*>(&hash);
+  bytes.insert(bytes.end(), begin, begin + sizeof hash);
+  try {
+    from_bytes(bytes, "a.h5");
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("has format 1"), std::string::npos) << error.what();
   }
 }
 

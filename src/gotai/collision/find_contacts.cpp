@@ -4,6 +4,8 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 #include "gotai/collision/broad_phase.h"
 #include "gotai/collision/sphere_contacts.h"
@@ -107,6 +109,7 @@ struct CollisionCache::Storage {
     BodyPair pair;
     std::array<std::uint32_t, 2> shape{};  // of the two bodies, when it was learnt
     NearPair near;
+    model::ContactAnchors::Pair anchor;  // while the search goes on; otherwise the caller has it
   };
   std::vector<Remembered> remembered;
   std::vector<Remembered> before;
@@ -118,6 +121,8 @@ struct CollisionCache::Storage {
   void refresh_shapes(Shapes current, bool with_sphere_trees, bool with_exact_surfaces);
   void refresh_radii(const model::BodyState& bodies, const model::CollisionSettings& settings);
   void carry_over_memories(const model::BodyState& bodies);
+  void take_anchors(model::ContactAnchors& anchors);
+  void give_anchors(model::ContactAnchors& anchors);
 };
 
 // What is known of pairs stays with those that are still candidates and have the same shapes.
@@ -139,6 +144,36 @@ void CollisionCache::Storage::carry_over_memories(const model::BodyState& bodies
     std::swap(now.near, before[old].near);
   }
   before_count = candidates.size();
+}
+
+// Anchors of pairs that are no candidates any more are dropped.
+void CollisionCache::Storage::take_anchors(model::ContactAnchors& anchors) {
+  std::size_t old = 0;
+  for (std::size_t p = 0; p < candidates.size(); ++p) {
+    const auto key = std::pair(candidates[p].body_a, candidates[p].body_b);
+    model::ContactAnchors::Pair& now = remembered[p].anchor;
+    now.contacts.clear();
+    while (old < anchors.pairs.size() &&
+           std::pair(anchors.pairs[old].body_a, anchors.pairs[old].body_b) < key) {
+      ++old;
+    }
+    if (old < anchors.pairs.size() &&
+        std::pair(anchors.pairs[old].body_a, anchors.pairs[old].body_b) == key) {
+      std::swap(now, anchors.pairs[old++]);
+    } else {
+      std::tie(now.body_a, now.body_b) = key;
+    }
+  }
+}
+
+void CollisionCache::Storage::give_anchors(model::ContactAnchors& anchors) {
+  std::size_t count = 0;
+  for (std::size_t p = 0; p < candidates.size(); ++p) {
+    if (remembered[p].anchor.contacts.empty()) continue;
+    if (count == anchors.pairs.size()) anchors.pairs.emplace_back();
+    std::swap(remembered[p].anchor, anchors.pairs[count++]);
+  }
+  anchors.pairs.resize(count);
 }
 
 void CollisionCache::Storage::refresh_shapes(Shapes current, bool with_sphere_trees,
@@ -200,6 +235,9 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
   storage.refresh_radii(bodies, settings);
   storage.broad_phase.find_pairs(bodies, storage.radius, margin, storage.candidates);
   if (surface) storage.carry_over_memories(bodies);
+  const bool anchored = surface && options.anchors != nullptr && options.dt > 0.0 &&
+                        options.contacts == model::ContactTreatment::reduced;
+  if (anchored) storage.take_anchors(*options.anchors);
 
   // Pairs are cut into chunks by their number alone and joined in order: the result does not depend
   // on the number of threads.
@@ -217,8 +255,10 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
       scratch.search.tests = 0;
       scratch.reduction_error = 0.0;
       for (std::size_t p = c * size; p < end; ++p) {
+        CollisionCache::Storage::Remembered& known = storage.remembered[p];
         append_surface_contacts(bodies, storage.candidates[p], shapes, storage.exact, margin,
-                                options, scratch, chunk.contacts, &storage.remembered[p].near);
+                                options, scratch, chunk.contacts, &known.near,
+                                anchored ? &known.anchor : nullptr);
       }
       chunk.tests[0] = scratch.search.tests;
       chunk.reduction_error = scratch.reduction_error;
@@ -230,6 +270,8 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
                              scratch, chunk.contacts, chunk.tests);
     }
   });
+
+  if (anchored) storage.give_anchors(*options.anchors);
 
   SearchStatistics statistics;
   statistics.candidate_pairs = static_cast<std::uint32_t>(pairs);

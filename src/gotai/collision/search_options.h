@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "gotai/model/contact_anchors.h"
 #include "gotai/model/contact_memory.h"
 #include "gotai/model/settings.h"
 
@@ -18,6 +19,9 @@ struct SearchOptions {
   double dt = 0.0;
   /// Impulses of the last step, sorted by (body_a, body_b, feature): `reduced` keeps what carried.
   std::span<const model::ContactMemory::Entry> memory;
+  /// What earlier steps found, updated by the search. The model `surface`, in a step with `reduced`
+  /// contacts, takes those of pairs that hardly moved from here. Null: all are found anew.
+  model::ContactAnchors* anchors = nullptr;
 };
 
 }  // namespace gotai::collision

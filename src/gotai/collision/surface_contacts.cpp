@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "gotai/collision/anchored_contacts.h"
 #include "gotai/collision/pair_motion.h"
 #include "gotai/collision/relative_pose.h"
 #include "gotai/collision/surface_faces.h"
@@ -287,40 +288,85 @@ void emit(const BodyState& bodies, const BodyPair& pair, const ContactCandidate&
   out.friction_W.back() = x_A + R_WA * (c.share_A - (0.5 * c.gap) * c.normal_A);
 }
 
+// Finds the candidates for contacts at the present poses.
+void find_candidates(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
+                     ExactSurfaces smooth, double reach, const PairMotion& motion,
+                     SurfaceScratch& scratch, NearPair* near) {
+  scratch.candidates.clear();
+  if (bodies.geometry[pair.body_b] != model::Geometry::shape) {
+    append_face_contacts(bodies, pair, shapes, smooth, reach, motion, scratch);
+    return;
+  }
+  for (const bool samples_of_b : {false, true}) {
+    NearSamples* one_way = near == nullptr ? nullptr : &(*near)[samples_of_b ? 1 : 0];
+    FieldContacts(bodies, pair, shapes, smooth, samples_of_b)
+        .append(reach, motion, one_way, scratch);
+  }
+}
+
+// Keeps few candidates, and measures their gaps.
+void reduce_candidates(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
+                       ExactSurfaces exact, const SearchOptions& options, const PairMotion& motion,
+                       SurfaceScratch& scratch) {
+  reduce_contacts(scratch.candidates, remembered(options.memory, pair),
+                  {.length = motion.size(),
+                   .depth_step = kDepthStep * motion.size(),
+                   .reach = motion.rest_reach()},
+                  scratch.reduction);
+  scratch.reduction_error = std::max(scratch.reduction_error, scratch.reduction.error);
+  if (!exact.empty() && bodies.geometry[pair.body_b] == model::Geometry::shape) {
+    refine_kept(bodies, pair, shapes, exact, motion.rest_reach(), options.dt > 0.0, scratch);
+  }
+}
+
+// Anchors the kept candidates at the present poses.
+void anchor_kept(const BodyState& bodies, double reach, const SurfaceScratch& scratch,
+                 model::ContactAnchors::Pair& anchor) {
+  const BodyIndex a = anchor.body_a;
+  const BodyIndex b = anchor.body_b;
+  anchor.X_BA = relative_pose({bodies.x_W[b], bodies.q_WB[b]}, {bodies.x_W[a], bodies.q_WB[a]});
+  anchor.reach = reach;
+  const Mat3 R_BA = anchor.X_BA.q.toRotationMatrix();
+  for (const std::uint32_t k : scratch.reduction.kept) {
+    const ContactCandidate& c = scratch.candidates[k];
+    anchor.contacts.push_back({c.point_A, anchor.X_BA.p + R_BA * (c.point_A - c.gap * c.normal_A),
+                               R_BA * c.normal_A, c.share_A - (0.5 * c.gap) * c.normal_A, c.area,
+                               c.feature});
+  }
+}
+
 }  // namespace
 
 void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
                              ExactSurfaces exact, double margin, const SearchOptions& options,
-                             SurfaceScratch& scratch, model::ContactSet& out, NearPair* near) {
+                             SurfaceScratch& scratch, model::ContactSet& out, NearPair* near,
+                             model::ContactAnchors::Pair* anchor) {
   const PairMotion motion(bodies, pair, options.dt);
-  const double reach = motion.reach(margin);
+  double reach = motion.reach(margin);
+  if (anchor != nullptr) {
+    if (!anchor->contacts.empty() && is_near_anchor(*anchor, bodies, motion, reach)) {
+      append_anchored(*anchor, bodies, out);
+      return;
+    }
+    anchor->contacts.clear();
+    reach += kAnchorTolerance * motion.size();
+  }
   // Bodies move on the smooth surfaces that their meshes stand for; outside steps meshes decide.
   const ExactSurfaces smooth = options.dt > 0.0 ? exact : ExactSurfaces{};
-  scratch.candidates.clear();
-  if (bodies.geometry[pair.body_b] == model::Geometry::shape) {
-    for (const bool samples_of_b : {false, true}) {
-      NearSamples* one_way = near == nullptr ? nullptr : &(*near)[samples_of_b ? 1 : 0];
-      FieldContacts(bodies, pair, shapes, smooth, samples_of_b)
-          .append(reach, motion, one_way, scratch);
-    }
-  } else {
-    append_face_contacts(bodies, pair, shapes, smooth, reach, motion, scratch);
-  }
+  find_candidates(bodies, pair, shapes, smooth, reach, motion, scratch, near);
   if (scratch.candidates.empty()) return;
+  const bool reduced = options.contacts == model::ContactTreatment::reduced;
+  if (reduced) reduce_candidates(bodies, pair, shapes, exact, options, motion, scratch);
+  if (anchor != nullptr) {
+    anchor_kept(bodies, reach, scratch, *anchor);
+    append_anchored(*anchor, bodies, out);
+    return;
+  }
   const auto begin = static_cast<std::uint32_t>(out.size());
   out.pairs.push_back({pair.body_a, pair.body_b, begin, begin});
   const Mat3 R_WA = bodies.q_WB[pair.body_a].toRotationMatrix();
   const Mat3 R_WB = bodies.q_WB[pair.body_b].toRotationMatrix();
-  if (options.contacts == model::ContactTreatment::reduced) {
-    reduce_contacts(scratch.candidates, remembered(options.memory, pair),
-                    {.length = motion.size(),
-                     .depth_step = kDepthStep * motion.size(),
-                     .reach = motion.rest_reach()},
-                    scratch.reduction);
-    scratch.reduction_error = std::max(scratch.reduction_error, scratch.reduction.error);
-    if (!exact.empty() && bodies.geometry[pair.body_b] == model::Geometry::shape) {
-      refine_kept(bodies, pair, shapes, exact, motion.rest_reach(), options.dt > 0.0, scratch);
-    }
+  if (reduced) {
     for (const std::uint32_t k : scratch.reduction.kept) {
       emit(bodies, pair, scratch.candidates[k], R_WA, R_WB, out);
     }

@@ -53,10 +53,14 @@ using ExactSurfaces = std::span<const std::unique_ptr<const ExactSurface>>;
 /// @param margin  [m], >= 0
 /// @param near    of the pair's last search with these shapes, or empty: changes no bit of the
 ///                result. Null: nothing is kept
+/// @param anchor  of the pair, for `reduced` in a step: while the pair is near it, its contacts are
+///                taken from there, otherwise it is set anew; without contacts: nothing is known.
+///                Null: contacts are those of the present poses
 void append_surface_contacts(const model::BodyState& bodies, const BodyPair& pair,
                              std::span<const std::shared_ptr<const voxel::Shape>> shapes,
                              ExactSurfaces exact, double margin, const SearchOptions& options,
                              SurfaceScratch& scratch, model::ContactSet& out,
-                             NearPair* near = nullptr);
+                             NearPair* near = nullptr,
+                             model::ContactAnchors::Pair* anchor = nullptr);
 
 }  // namespace gotai::collision

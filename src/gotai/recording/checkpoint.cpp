@@ -1,5 +1,7 @@
 #include "gotai/recording/checkpoint.h"
 
+#include <fmt/format.h>
+
 #include <cstring>
 #include <type_traits>
 
@@ -9,7 +11,7 @@
 namespace gotai::recording {
 namespace {
 
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 /// Appends the fields of a checkpoint. `visit` below drives writer and reader alike, so that they
 /// cannot disagree.
@@ -125,6 +127,61 @@ bool unpack(const PackedMemory& packed, model::ContactMemory& memory) {
   return true;
 }
 
+/// The contact anchors as arrays without padding.
+struct PackedAnchors {
+  static constexpr std::size_t kPerPair = 8;
+  static constexpr std::size_t kPerContact = 13;
+  std::vector<std::uint32_t> pairs;  // body a, body b, contacts
+  Numbers poses;                     // p, q (w, x, y, z), reach
+  std::vector<std::uint64_t> features;
+  Numbers contacts;  // points on a and b, normal, point of friction, area
+};
+
+PackedAnchors pack(const model::ContactAnchors& anchors) {
+  PackedAnchors packed;
+  for (const model::ContactAnchors::Pair& pair : anchors.pairs) {
+    const auto count = static_cast<std::uint32_t>(pair.contacts.size());
+    packed.pairs.insert(packed.pairs.end(), {pair.body_a, pair.body_b, count});
+    const Vec3& p = pair.X_BA.p;
+    const Quat& q = pair.X_BA.q;
+    packed.poses.insert(packed.poses.end(),
+                        {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), pair.reach});
+    for (const model::ContactAnchors::Contact& c : pair.contacts) {
+      packed.features.push_back(c.feature);
+      for (const Vec3& v : {c.point_A, c.point_B, c.normal_B, c.friction_A}) {
+        packed.contacts.insert(packed.contacts.end(), {v.x(), v.y(), v.z()});
+      }
+      packed.contacts.push_back(c.area);
+    }
+  }
+  return packed;
+}
+
+bool unpack(const PackedAnchors& packed, model::ContactAnchors& anchors) {
+  const std::size_t n = packed.pairs.size() / 3;
+  const std::size_t contacts = packed.features.size();
+  if (packed.pairs.size() != 3 * n || packed.poses.size() != PackedAnchors::kPerPair * n ||
+      packed.contacts.size() != PackedAnchors::kPerContact * contacts) {
+    return false;
+  }
+  anchors.pairs.resize(n);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint32_t* pair = packed.pairs.data() + 3 * i;
+    const double* x = packed.poses.data() + PackedAnchors::kPerPair * i;
+    if (pair[2] > contacts - next) return false;
+    anchors.pairs[i] = {
+        pair[0], pair[1], {Vec3(x[0], x[1], x[2]), Quat(x[3], x[4], x[5], x[6])}, x[7], {}};
+    for (const std::size_t end = next + pair[2]; next < end; ++next) {
+      const double* c = packed.contacts.data() + PackedAnchors::kPerContact * next;
+      anchors.pairs[i].contacts.push_back({Vec3(c[0], c[1], c[2]), Vec3(c[3], c[4], c[5]),
+                                           Vec3(c[6], c[7], c[8]), Vec3(c[9], c[10], c[11]), c[12],
+                                           packed.features[next]});
+    }
+  }
+  return next == contacts;
+}
+
 /// Everything of a checkpoint as numbers and arrays.
 struct Packed {
   std::uint32_t version = kVersion;
@@ -134,10 +191,10 @@ struct Packed {
   std::vector<char> state_hash;
   Numbers x, q, v, L, w;
   PackedMemory memory;
+  PackedAnchors anchors;
 
   template <typename Stream>
   void visit(Stream& stream) {
-    stream.number(version);
     for (std::uint64_t* n : {&frames, &steps, &contacts, &step_count}) stream.number(*n);
     stream.number(time);
     stream.number(last_dt);
@@ -146,6 +203,10 @@ struct Packed {
     for (Numbers* numbers : {&x, &q, &v, &L, &w, &memory.impulses}) stream.array(*numbers);
     stream.array(memory.pairs);
     stream.array(memory.features);
+    stream.array(anchors.pairs);
+    stream.array(anchors.features);
+    stream.array(anchors.poses);
+    stream.array(anchors.contacts);
   }
 };
 
@@ -172,7 +233,9 @@ std::vector<std::uint8_t> to_bytes(const Checkpoint& checkpoint) {
   packed.L = pack(s.L_W);
   packed.w = pack(s.w_W);
   packed.memory = pack(s.memory);
+  packed.anchors = pack(s.anchors);
   Writer writer;
+  writer.number(packed.version);
   packed.visit(writer);
   std::vector<std::uint8_t> bytes = writer.take();
   const Hash128 hash = checksum(bytes.data(), bytes.size());
@@ -191,6 +254,12 @@ Checkpoint from_bytes(const std::vector<std::uint8_t>& bytes, const std::string&
   if (!(hash == checksum(bytes.data(), size))) reader.fail();
 
   Packed packed;
+  reader.number(packed.version);
+  if (packed.version != kVersion) {
+    throw FileError(path, fmt::format("its checkpoint has format {}, and this version goes on from "
+                                      "format {}; run the scene again",
+                                      packed.version, kVersion));
+  }
   packed.visit(reader);
   Checkpoint out;
   Snapshot& s = out.snapshot;
@@ -198,8 +267,8 @@ Checkpoint from_bytes(const std::vector<std::uint8_t>& bytes, const std::string&
   const bool sizes_agree = packed.x.size() == 3 * n && packed.q.size() == 4 * n &&
                            packed.v.size() == 3 * n && packed.L.size() == 3 * n &&
                            packed.w.size() == 3 * n;
-  if (packed.version != kVersion || !reader.is_at_end() || !sizes_agree ||
-      !unpack(packed.memory, s.memory)) {
+  if (!reader.is_at_end() || !sizes_agree || !unpack(packed.memory, s.memory) ||
+      !unpack(packed.anchors, s.anchors)) {
     reader.fail();
   }
   unpack(packed.x, s.x_W);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gotai/core/types.h"
+#include "gotai/model/contact_anchors.h"
 #include "gotai/model/contact_memory.h"
 
 namespace gotai {
@@ -16,12 +17,13 @@ struct Snapshot {
   double time = 0.0;     ///< [s]
   double last_dt = 0.0;  ///< size of the last step [s]; the energy of a step refers to it
   std::uint64_t step_count = 0;
-  std::vector<Vec3> x_W;        ///< centre of mass [m]
-  std::vector<Quat> q_WB;       ///< orientation
-  std::vector<Vec3> v_W;        ///< velocity [m/s]
-  std::vector<Vec3> L_W;        ///< angular momentum [kg m^2/s]
-  std::vector<Vec3> w_W;        ///< angular velocity [rad/s]
-  model::ContactMemory memory;  ///< impulses for the warm start
+  std::vector<Vec3> x_W;          ///< centre of mass [m]
+  std::vector<Quat> q_WB;         ///< orientation
+  std::vector<Vec3> v_W;          ///< velocity [m/s]
+  std::vector<Vec3> L_W;          ///< angular momentum [kg m^2/s]
+  std::vector<Vec3> w_W;          ///< angular velocity [rad/s]
+  model::ContactMemory memory;    ///< impulses for the warm start
+  model::ContactAnchors anchors;  ///< contacts of pairs that may rest
 };
 
 }  // namespace gotai

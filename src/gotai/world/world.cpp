@@ -27,9 +27,9 @@ model::StepReport World::step() {
   aim_kinematic_bodies(plan.dt);
   report.other_s += clock.lap();
 
-  const collision::SearchStatistics search =
-      collision::find_contacts(bodies_, shapes_, settings_.collision, plan.contact_margin, cache_,
-                               contacts_, {settings_.impulse.contacts, plan.dt, memory_.entries});
+  const collision::SearchStatistics search = collision::find_contacts(
+      bodies_, shapes_, settings_.collision, plan.contact_margin, cache_, contacts_,
+      {settings_.impulse.contacts, plan.dt, memory_.entries, &anchors_});
   report.collision_s += clock.lap();
 
   update_.reset(bodies_.size(), contacts_.size());

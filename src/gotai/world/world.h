@@ -15,6 +15,7 @@
 #include "gotai/dynamics/integrate.h"
 #include "gotai/impulse/method.h"
 #include "gotai/model/body_state.h"
+#include "gotai/model/contact_anchors.h"
 #include "gotai/model/contact_memory.h"
 #include "gotai/model/contact_set.h"
 #include "gotai/model/material.h"
@@ -137,6 +138,7 @@ class World {
   // State (docs/architecture.md, "What is state").
   model::BodyState bodies_;
   model::ContactMemory memory_;
+  model::ContactAnchors anchors_;
   double time_ = 0.0;
   double last_dt_ = 0.0;
   std::uint64_t step_count_ = 0;

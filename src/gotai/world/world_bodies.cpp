@@ -146,6 +146,7 @@ void World::remove_body(BodyId id) {
     if (e.body_a > removed) --e.body_a;
     if (e.body_b > removed) --e.body_b;
   }
+  model::erase_body(anchors_, removed);
   contacts_.clear();
   update_.reset(bodies_.size(), 0);
 }

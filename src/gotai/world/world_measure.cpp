@@ -28,7 +28,7 @@ Vec3 World::angular_momentum() const {
 
 Snapshot World::snapshot() const {
   return {time_,       last_dt_,    step_count_, bodies_.x_W, bodies_.q_WB,
-          bodies_.v_W, bodies_.L_W, bodies_.w_W, memory_};
+          bodies_.v_W, bodies_.L_W, bodies_.w_W, memory_,     anchors_};
 }
 
 void World::restore(const Snapshot& s) {
@@ -46,6 +46,7 @@ void World::restore(const Snapshot& s) {
   bodies_.L_W = s.L_W;
   bodies_.w_W = s.w_W;
   memory_ = s.memory;
+  anchors_ = s.anchors;
   for (model::BodyIndex i = 0; i < bodies_.size(); ++i) model::refresh_derived(bodies_, i);
   contacts_.clear();
   update_.reset(bodies_.size(), 0);
@@ -64,6 +65,14 @@ Hash128 World::state_hash() const {
   add(bodies_.w_W);
   for (const model::ContactMemory::Entry& e : memory_.entries)
     hasher.value(e.body_a).value(e.body_b).value(e.feature).value(e.impulse_W);
+  for (const model::ContactAnchors::Pair& pair : anchors_.pairs) {
+    hasher.value(pair.body_a).value(pair.body_b).value(pair.X_BA.p).value(pair.X_BA.q.coeffs());
+    hasher.value(pair.reach);
+    for (const model::ContactAnchors::Contact& c : pair.contacts) {
+      hasher.value(c.point_A).value(c.point_B).value(c.normal_B).value(c.friction_A);
+      hasher.value(c.area).value(c.feature);
+    }
+  }
   return hasher.digest();
 }
 

@@ -1,0 +1,47 @@
+#include "gotai/collision/anchored_contacts.h"
+
+#include "gotai/collision/relative_pose.h"
+
+namespace gotai::collision {
+
+bool is_near_anchor(const model::ContactAnchors::Pair& anchor, const model::BodyState& bodies,
+                    const PairMotion& motion, double reach) {
+  const model::BodyIndex a = anchor.body_a;
+  const model::BodyIndex b = anchor.body_b;
+  const Pose X_BA = relative_pose({bodies.x_W[b], bodies.q_WB[b]}, {bodies.x_W[a], bodies.q_WB[a]});
+  // A turn by t moves points at a distance r from its axis by 2 r sin(t / 2).
+  const double turned = 2.0 * (anchor.X_BA.q.conjugate() * X_BA.q).vec().norm();
+  const double moved = (X_BA.p - anchor.X_BA.p).norm() + turned * bodies.bounding_radius[a];
+  return moved + motion.farthest() <= kAnchorTolerance * motion.size() &&
+         reach + moved <= anchor.reach;
+}
+
+void append_anchored(const model::ContactAnchors::Pair& anchor, const model::BodyState& bodies,
+                     model::ContactSet& out) {
+  const std::size_t begin = out.size();
+  const std::size_t end = begin + anchor.contacts.size();
+  out.pairs.push_back({anchor.body_a, anchor.body_b, static_cast<std::uint32_t>(begin),
+                       static_cast<std::uint32_t>(end)});
+  out.resize(end);
+  const Vec3& x_A = bodies.x_W[anchor.body_a];
+  const Vec3 from_b_to_a = x_A - bodies.x_W[anchor.body_b];
+  const Mat3 R_WA = bodies.q_WB[anchor.body_a].toRotationMatrix();
+  const Mat3 R_WB = bodies.q_WB[anchor.body_b].toRotationMatrix();
+  for (std::size_t i = begin; i < end; ++i) {
+    const model::ContactAnchors::Contact& c = anchor.contacts[i - begin];
+    // Both about the centre of body a: far from the world's origin the other order would cancel.
+    const Vec3 on_a = R_WA * c.point_A;
+    const Vec3 on_b = R_WB * c.point_B - from_b_to_a;
+    const Vec3 normal = R_WB * c.normal_B;
+    out.point_W[i] = x_A + 0.5 * (on_a + on_b);
+    out.normal_W[i] = normal;
+    out.gap[i] = normal.dot(on_a - on_b);
+    out.anchor_A[i] = c.point_A;
+    out.anchor_B[i] = c.point_B;
+    out.friction_W[i] = x_A + R_WA * c.friction_A;
+    out.area[i] = c.area;
+    out.feature[i] = c.feature;
+  }
+}
+
+}  // namespace gotai::collision
