@@ -1,7 +1,10 @@
 // The sub-stepped solver on voxel-sphere contacts: rest, sliding, bouncing, stacks, bits.
 #include <gtest/gtest.h>
 
+#include <hwy/targets.h>
+
 #include <cmath>
+#include <cstdio>
 
 #include "gotai/core/parallel.h"
 #include "gotai/geometry/generate.h"
@@ -182,7 +185,7 @@ TEST(Substepped, SameBitsForOneAndTwoThreadsAndTwice) {
 }
 
 // Many pairs in every wave of the solver, so that threads do share the work.
-TEST(Substepped, APileOnItsSurfacesHasTheSameBitsForOneAndTwoThreads) {
+TEST(Substepped, APileOnItsSurfacesHasTheSameBitsForAnyThreadsAndInstructionSet) {
   const auto shape = std::make_shared<const voxel::Shape>(
       voxel::make_shape("hexapod", geometry::generate({.shape = "hexapod"}),
                         {.prepared_level = kLevel, .surface_level = kLevel}));
@@ -207,7 +210,16 @@ TEST(Substepped, APileOnItsSurfacesHasTheSameBitsForOneAndTwoThreads) {
     EXPECT_GT(world.contacts().pairs.size(), 150U);
     return world.state_hash();
   };
-  EXPECT_EQ(run(1), run(2));
+  const Hash128 one = run(1);
+  EXPECT_EQ(one, run(2));
+  for (const std::int64_t targets : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(targets);
+    hwy::GetChosenTarget().Update(targets);
+    EXPECT_EQ(one, run(1)) << hwy::TargetName(targets);
+    std::printf("same bits with %s\n", hwy::TargetName(targets));
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 }  // namespace

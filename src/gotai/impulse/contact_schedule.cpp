@@ -25,6 +25,7 @@ void ContactScheduler::measure_heights(const model::BodyState& bodies,
   }
 
   height_.assign(count, kUnsupported);
+  highest_ = 0;
   queue_.clear();
   for (model::BodyIndex i = 0; i < count; ++i) {
     if (bodies.is_dynamic(i)) continue;
@@ -33,6 +34,7 @@ void ContactScheduler::measure_heights(const model::BodyState& bodies,
   }
   for (std::size_t head = 0; head < queue_.size(); ++head) {
     const std::uint32_t i = queue_[head];
+    highest_ = height_[i];
     for (std::uint32_t k = neighbor_begin_[i]; k < neighbor_begin_[i + 1]; ++k) {
       const std::uint32_t j = neighbor_[k];
       if (height_[j] != kUnsupported) continue;
@@ -42,25 +44,56 @@ void ContactScheduler::measure_heights(const model::BodyState& bodies,
   }
 }
 
-const ContactSchedule& ContactScheduler::build(const model::BodyState& bodies,
-                                               const model::ContactSet& contacts,
-                                               const std::vector<std::uint32_t>& counts) {
-  measure_heights(bodies, contacts);
-  const auto pair_count = static_cast<std::uint32_t>(contacts.pairs.size());
-  order_.resize(pair_count);
-  for (std::uint32_t p = 0; p < pair_count; ++p) order_[p] = p;
-  const auto height_of = [&](std::uint32_t p) {
-    const model::ContactPair& pair = contacts.pairs[p];
-    const std::uint32_t a = height_[pair.body_a];
-    const std::uint32_t b = height_[pair.body_b];
-    return std::pair(std::max(a, b), std::min(a, b));
-  };
-  std::stable_sort(order_.begin(), order_.end(),
-                   [&](std::uint32_t p, std::uint32_t q) { return height_of(p) > height_of(q); });
+void ContactScheduler::measure_islands(const model::BodyState& bodies,
+                                       const model::ContactSet& contacts) {
+  islands_.reset(bodies.size());
+  for (const model::ContactPair& pair : contacts.pairs) {
+    if (bodies.is_dynamic(pair.body_a) && bodies.is_dynamic(pair.body_b))
+      islands_.join(pair.body_a, pair.body_b);
+  }
+  island_size_.assign(bodies.size(), 0);
+  is_linked_.assign(bodies.size(), false);
+  for (const model::ContactPair& pair : contacts.pairs) {
+    const std::uint32_t island = islands_.least(pair.body_a);
+    island_size_[island] += pair.size();
+    if (bodies.is_dynamic(pair.body_b)) is_linked_[island] = true;
+  }
+}
 
+template <typename Key>
+void ContactScheduler::sort_order(std::uint32_t buckets, const Key& key) {
+  bucket_begin_.assign(buckets + 1, 0);
+  for (const std::uint32_t p : order_) ++bucket_begin_[key(p) + 1];
+  for (std::uint32_t k = 0; k < buckets; ++k) bucket_begin_[k + 1] += bucket_begin_[k];
+  sorted_.resize(order_.size());
+  for (const std::uint32_t p : order_) sorted_[bucket_begin_[key(p)]++] = p;
+  order_.swap(sorted_);
+}
+
+void ContactScheduler::sort_top_down(const model::ContactSet& contacts) {
+  // Floating bodies are above all others.
+  const auto depth = [&](model::BodyIndex i) {
+    return height_[i] == kUnsupported ? 0U : highest_ + 1 - height_[i];
+  };
+  sort_order(highest_ + 2, [&](std::uint32_t p) {
+    return std::max(depth(contacts.pairs[p].body_a), depth(contacts.pairs[p].body_b));
+  });
+  sort_order(highest_ + 2, [&](std::uint32_t p) {
+    return std::min(depth(contacts.pairs[p].body_a), depth(contacts.pairs[p].body_b));
+  });
+}
+
+void ContactScheduler::assign_waves(const model::BodyState& bodies,
+                                    const model::ContactSet& contacts,
+                                    std::uint32_t largest_stack) {
+  const auto kind_of = [&](const model::ContactPair& pair) {
+    const std::uint32_t island = islands_.least(pair.body_a);
+    if (!is_linked_[island]) return IslandKind::lone;
+    return island_size_[island] <= largest_stack ? IslandKind::stack : IslandKind::pile;
+  };
   next_wave_.assign(bodies.size(), 0);
-  wave_of_.resize(pair_count);
-  std::uint32_t waves = 0;
+  wave_of_.resize(order_.size());
+  std::array<std::uint32_t, kIslandKinds> waves{};
   for (const std::uint32_t p : order_) {
     const model::ContactPair& pair = contacts.pairs[p];
     std::uint32_t wave = 0;
@@ -69,16 +102,38 @@ const ContactSchedule& ContactScheduler::build(const model::BodyState& bodies,
     for (const model::BodyIndex i : {pair.body_a, pair.body_b})
       if (bodies.is_dynamic(i)) next_wave_[i] = wave + 1;
     wave_of_[p] = wave;
-    waves = std::max(waves, wave + 1);
+    std::uint32_t& count = waves[static_cast<std::size_t>(kind_of(pair))];
+    count = std::max(count, wave + 1);
   }
+  for (std::size_t k = 0; k < kIslandKinds; ++k)
+    schedule_.kind_begin[k + 1] = schedule_.kind_begin[k] + waves[k];
+  for (const std::uint32_t p : order_)
+    wave_of_[p] += schedule_.kind_begin[static_cast<std::size_t>(kind_of(contacts.pairs[p]))];
+  schedule_.wave_begin.assign(schedule_.kind_begin[kIslandKinds] + 1, 0);
+}
 
+const ContactSchedule& ContactScheduler::build(const model::BodyState& bodies,
+                                               const model::ContactSet& contacts,
+                                               std::uint32_t largest_stack) {
+  measure_heights(bodies, contacts);
+  measure_islands(bodies, contacts);
+  const auto pair_count = static_cast<std::uint32_t>(contacts.pairs.size());
+  const auto reset_order = [&] {
+    order_.resize(pair_count);
+    for (std::uint32_t p = 0; p < pair_count; ++p) order_[p] = p;
+  };
+  reset_order();
+  sort_top_down(contacts);
+  assign_waves(bodies, contacts, largest_stack);
+
+  reset_order();
+  std::uint32_t longest = 0;
+  for (const model::ContactPair& pair : contacts.pairs) longest = std::max(longest, pair.size());
+  sort_order(longest + 1, [&](std::uint32_t p) { return longest - contacts.pairs[p].size(); });
+  const auto waves = static_cast<std::uint32_t>(schedule_.waves());
+  sort_order(waves, [&](std::uint32_t p) { return wave_of_[p]; });
   schedule_.pair = order_;
-  std::sort(schedule_.pair.begin(), schedule_.pair.end(), [&](std::uint32_t p, std::uint32_t q) {
-    if (wave_of_[p] != wave_of_[q]) return wave_of_[p] < wave_of_[q];
-    return counts[p] != counts[q] ? counts[p] > counts[q] : p < q;
-  });
-  schedule_.wave_begin.assign(waves + 1, 0);
-  for (const std::uint32_t p : schedule_.pair) ++schedule_.wave_begin[wave_of_[p] + 1];
+  for (const std::uint32_t p : order_) ++schedule_.wave_begin[wave_of_[p] + 1];
   for (std::uint32_t w = 0; w < waves; ++w) schedule_.wave_begin[w + 1] += schedule_.wave_begin[w];
   return schedule_;
 }

@@ -12,7 +12,11 @@ namespace gotai::impulse {
 /// Sets of the numbers 0..n-1 that can be joined; the least member stands for a set (union-find).
 class DisjointSets {
  public:
-  explicit DisjointSets(std::size_t n) : parent_(n) {
+  explicit DisjointSets(std::size_t n) { reset(n); }
+
+  /// Makes it n sets of one number each; storage is kept.
+  void reset(std::size_t n) {
+    parent_.resize(n);
     std::iota(parent_.begin(), parent_.end(), 0U);
   }
 

@@ -12,15 +12,10 @@ namespace gotai::impulse {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A pair's velocities are at hand while its batch is visited, so its contacts are swept more than
-// once: nearly a block solve, for the price of the arithmetic alone.
-constexpr int kVisitsPerSweep = 2;
 constexpr int kVisitsPerRestitution = 8;
 
 using Tag = hn::CappedTag<float, kLanes>;
-using IndexTag = hn::RebindToSigned<Tag>;
 using V = hn::Vec<Tag>;
-using Index = hn::Vec<IndexTag>;
 
 struct V3 {
   V x, y, z;
@@ -55,25 +50,104 @@ struct Motion {
   V3 v_a, w_a, v_b, w_b;
 };
 
-HWY_INLINE V3 gather3(const SoftBody* bodies, Index offset, int first) {
-  const auto* base = reinterpret_cast<const float*>(bodies);
-  const IndexTag d;
-  return {hn::GatherIndex(Tag(), base, offset + hn::Set(d, first)),
-          hn::GatherIndex(Tag(), base, offset + hn::Set(d, first + 1)),
-          hn::GatherIndex(Tag(), base, offset + hn::Set(d, first + 2))};
+using Components = float[6][kLanes];  // v.x .. w.z, lane by lane
+
+#if HWY_TARGET == HWY_SCALAR
+
+HWY_INLINE void gather(const SoftBody* bodies, const std::uint32_t* index, std::size_t count,
+                       Components& lanes) {
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t c = 0; c < 3; ++c) {
+      lanes[c][k] = bodies[index[k]].v[c];
+      lanes[3 + c][k] = bodies[index[k]].w[c];
+    }
+}
+
+HWY_INLINE void scatter(const Components& lanes, const std::uint32_t* index, std::uint32_t written,
+                        SoftBody* bodies) {
+  for (std::size_t k = 0; (written >> k) != 0; ++k) {
+    if (((written >> k) & 1U) == 0U) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      bodies[index[k]].v[c] = lanes[c][k];
+      bodies[index[k]].w[c] = lanes[3 + c][k];
+    }
+  }
+}
+
+#else
+
+using Quad = hn::Full128<float>;
+constexpr std::size_t kQuad = 4;
+
+/// Turns the rows of a 4x4 matrix into its columns.
+HWY_INLINE void transpose(hn::Vec<Quad>& a, hn::Vec<Quad>& b, hn::Vec<Quad>& c, hn::Vec<Quad>& e) {
+  const Quad d;
+  const auto ab_low = hn::InterleaveLower(d, a, b), ab_high = hn::InterleaveUpper(d, a, b);
+  const auto ce_low = hn::InterleaveLower(d, c, e), ce_high = hn::InterleaveUpper(d, c, e);
+  a = hn::ConcatLowerLower(d, ce_low, ab_low);
+  b = hn::ConcatUpperUpper(d, ce_low, ab_low);
+  c = hn::ConcatLowerLower(d, ce_high, ab_high);
+  e = hn::ConcatUpperUpper(d, ce_high, ab_high);
+}
+
+// Gather instructions are slower than transposing four bodies at a time.
+HWY_INLINE void gather(const SoftBody* bodies, const std::uint32_t* index, std::size_t count,
+                       Components& lanes) {
+  const Quad d;
+  for (std::size_t k = 0; k < count; k += kQuad) {
+    const auto read = [&](std::size_t first, auto part) {
+      auto x = hn::Load(d, part(bodies[index[k]]));
+      auto y = hn::Load(d, part(bodies[index[k + 1]]));
+      auto z = hn::Load(d, part(bodies[index[k + 2]]));
+      auto unused = hn::Load(d, part(bodies[index[k + 3]]));
+      transpose(x, y, z, unused);
+      hn::Store(x, d, lanes[first] + k);
+      hn::Store(y, d, lanes[first + 1] + k);
+      hn::Store(z, d, lanes[first + 2] + k);
+    };
+    read(0, [](const SoftBody& b) { return b.v; });
+    read(3, [](const SoftBody& b) { return b.w; });
+  }
+}
+
+HWY_INLINE void scatter(const Components& lanes, const std::uint32_t* index, std::uint32_t written,
+                        SoftBody* bodies) {
+  const Quad d;
+  for (std::size_t k = 0; (written >> k) != 0; k += kQuad) {
+    const auto write = [&](std::size_t first, auto part) {
+      hn::Vec<Quad> x = hn::Load(d, lanes[first] + k);
+      hn::Vec<Quad> y = hn::Load(d, lanes[first + 1] + k);
+      hn::Vec<Quad> z = hn::Load(d, lanes[first + 2] + k);
+      hn::Vec<Quad> unused = hn::Zero(d);
+      transpose(x, y, z, unused);
+      if (((written >> k) & 1U) != 0U) hn::Store(x, d, part(bodies[index[k]]));
+      if (((written >> k) & 2U) != 0U) hn::Store(y, d, part(bodies[index[k + 1]]));
+      if (((written >> k) & 4U) != 0U) hn::Store(z, d, part(bodies[index[k + 2]]));
+      if (((written >> k) & 8U) != 0U) hn::Store(unused, d, part(bodies[index[k + 3]]));
+    };
+    write(0, [](SoftBody& b) { return b.v; });
+    write(3, [](SoftBody& b) { return b.w; });
+  }
+}
+
+#endif
+
+HWY_INLINE V3 read3(const Components& lanes, std::size_t first) {
+  const Tag d;
+  return {hn::Load(d, lanes[first]), hn::Load(d, lanes[first + 1]), hn::Load(d, lanes[first + 2])};
 }
 
 HWY_INLINE Motion gather(const SoftBody* bodies, const PairBatch& batch, std::size_t l) {
-  const IndexTag d;
-  const Index a = hn::ShiftLeft<3>(hn::LoadU(d, batch.body_a + l));
-  const Index b = hn::ShiftLeft<3>(hn::LoadU(d, batch.body_b + l));
-  return {gather3(bodies, a, 0), gather3(bodies, a, 3), gather3(bodies, b, 0),
-          gather3(bodies, b, 3)};
+  HWY_ALIGN Components a;
+  HWY_ALIGN Components b;
+  gather(bodies, batch.body_a + l, hn::Lanes(Tag()), a);
+  gather(bodies, batch.body_b + l, hn::Lanes(Tag()), b);
+  return {read3(a, 0), read3(a, 3), read3(b, 0), read3(b, 3)};
 }
 
-HWY_INLINE void scatter(const V3& v, const V3& w, const std::int32_t* index, std::uint32_t written,
+HWY_INLINE void scatter(const V3& v, const V3& w, const std::uint32_t* index, std::uint32_t written,
                         SoftBody* bodies) {
-  HWY_ALIGN float lanes[6][kLanes];
+  HWY_ALIGN Components lanes;
   const Tag d;
   hn::Store(v.x, d, lanes[0]);
   hn::Store(v.y, d, lanes[1]);
@@ -81,14 +155,7 @@ HWY_INLINE void scatter(const V3& v, const V3& w, const std::int32_t* index, std
   hn::Store(w.x, d, lanes[3]);
   hn::Store(w.y, d, lanes[4]);
   hn::Store(w.z, d, lanes[5]);
-  for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
-    if (((written >> k) & 1U) == 0U) continue;
-    SoftBody& body = bodies[index[k]];
-    for (std::size_t c = 0; c < 3; ++c) {
-      body.v[c] = lanes[c][k];
-      body.w[c] = lanes[3 + c][k];
-    }
-  }
+  scatter(lanes, index, written & ((1U << hn::Lanes(d)) - 1U), bodies);
 }
 
 /// Normal impulse on a, its reaction on b.
@@ -102,13 +169,17 @@ HWY_INLINE void push_normal(const PairBatch& batch, std::size_t l, const Contact
   m.w_b = add_scaled(m.w_b, q, multiply(batch.inverse_I_b, l, load(row.j_b, l)));
 }
 
+HWY_INLINE V3 friction_arm_b(const PairBatch& batch, std::size_t l, const ContactRow& row) {
+  return add(load(row.f_a, l), load(batch.offset, l));
+}
+
 /// Impulse P at the friction point on a, its reaction on b.
 HWY_INLINE void push_friction(const PairBatch& batch, std::size_t l, const ContactRow& row,
                               const V3& P, Motion& m) {
   m.v_a = add_scaled(m.v_a, load(batch.inverse_mass_a, l), P);
   m.w_a = add(m.w_a, multiply(batch.inverse_I_a, l, cross(load(row.f_a, l), P)));
   m.v_b = add_scaled(m.v_b, zero() - load(batch.inverse_mass_b, l), P);
-  m.w_b = subtract(m.w_b, multiply(batch.inverse_I_b, l, cross(load(row.f_b, l), P)));
+  m.w_b = subtract(m.w_b, multiply(batch.inverse_I_b, l, cross(friction_arm_b(batch, l, row), P)));
 }
 
 HWY_INLINE V normal_velocity(std::size_t l, const ContactRow& row, const Motion& m) {
@@ -127,7 +198,7 @@ HWY_INLINE void solve_friction(const PairBatch& batch, std::size_t l, ContactRow
   const V3 t1 = load(row.t, l);
   const V3 t2 = cross(n, t1);
   const V3 slip = subtract(add(m.v_a, cross(m.w_a, load(row.f_a, l))),
-                           add(m.v_b, cross(m.w_b, load(row.f_b, l))));
+                           add(m.v_b, cross(m.w_b, friction_arm_b(batch, l, row))));
   const V s1 = dot(slip, t1);
   const V s2 = dot(slip, t2);
   const V k12 = load(row.k12, l);
@@ -180,14 +251,17 @@ HWY_INLINE void solve_normal(const PairBatch& batch, std::size_t l, ContactRow& 
   push_normal(batch, l, row, p - old, m);
 }
 
+/// Calls visit(batch, first lane, motion) for every group of lanes in use.
 template <typename Visit>
-HWY_INLINE void for_each_group(const SoftBody* bodies, const PairBatch* batches, std::size_t count,
+HWY_INLINE void for_each_group(const SoftProblem& problem, std::size_t first, std::size_t count,
                                const Visit& visit) {
-  for (std::size_t k = 0; k < count; ++k)
-    for (std::size_t l = 0; l < kLanes; l += hn::Lanes(Tag())) {
-      Motion m = gather(bodies, batches[k], l);
-      visit(batches[k], l, m);
+  for (std::size_t k = first; k < first + count; ++k) {
+    const PairBatch& batch = problem.batches[k];
+    for (std::size_t l = 0; l < batch.lanes; l += hn::Lanes(Tag())) {
+      Motion m = gather(problem.bodies, batch, l);
+      visit(batch, l, m);
     }
+  }
 }
 
 HWY_INLINE void scatter_pair(const PairBatch& batch, std::size_t l, const Motion& m,
@@ -196,11 +270,83 @@ HWY_INLINE void scatter_pair(const PairBatch& batch, std::size_t l, const Motion
   scatter(m.v_b, m.w_b, batch.body_b + l, batch.dynamic_b >> l, bodies);
 }
 
-void WarmStart(SoftBody* bodies, const PairBatch* batches, std::size_t count,
-               const ContactRow* rows) {
-  for_each_group(bodies, batches, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
+/// What friction at a pair's arms does: response to impulses along two tangents.
+struct Response {
+  V k11, k12, k22;
+};
+
+HWY_INLINE Response tangential_response(const PairBatch& batch, std::size_t l,
+                                        const ContactRow& row, const V3& t1, const V3& t2) {
+  const V3 f_a = load(row.f_a, l);
+  const V3 f_b = friction_arm_b(batch, l, row);
+  const V3 a1 = cross(f_a, t1), a2 = cross(f_a, t2);
+  const V3 b1 = cross(f_b, t1), b2 = cross(f_b, t2);
+  const V3 Ia1 = multiply(batch.inverse_I_a, l, a1), Ia2 = multiply(batch.inverse_I_a, l, a2);
+  const V3 Ib1 = multiply(batch.inverse_I_b, l, b1), Ib2 = multiply(batch.inverse_I_b, l, b2);
+  const V inverse_mass = load(batch.inverse_mass_a, l) + load(batch.inverse_mass_b, l);
+  return {inverse_mass + dot(a1, Ia1) + dot(b1, Ib1), dot(a1, Ia2) + dot(b1, Ib2),
+          inverse_mass + dot(a2, Ia2) + dot(b2, Ib2)};
+}
+
+/// A unit vector across n that turns smoothly with it on each side of the switch.
+HWY_INLINE V3 tangent(const V3& n) {
+  const Tag d;
+  const auto use_x = hn::Lt(hn::Abs(n.x), hn::Set(d, 0.6F));
+  const V3 t = {hn::IfThenElse(use_x, zero(), zero() - n.z), hn::IfThenElseZero(use_x, n.z),
+                hn::IfThenElse(use_x, zero() - n.y, n.x)};
+  const V scale = hn::Set(d, 1.0F) / hn::Sqrt(hn::Max(dot(t, t), hn::Set(d, 1e-30F)));
+  return {t.x * scale, t.y * scale, t.z * scale};
+}
+
+HWY_INLINE void store(const V3& v, Lane3& a, std::size_t l) {
+  store(v.x, a.x, l);
+  store(v.y, a.y, l);
+  store(v.z, a.z, l);
+}
+
+HWY_INLINE void prepare_row(const PairBatch& batch, std::size_t l, ContactRow& row,
+                            const Motion& m) {
+  const Tag d;
+  const V one = hn::Set(d, 1.0F);
+  const V3 n = load(row.n, l);
+  const auto used = hn::Gt(dot(n, n), hn::Set(d, 0.5F));
+  const V3 arm = load(row.j_a, l);
+  const V3 j_a = cross(arm, n);
+  const V3 j_b = cross(add(arm, load(batch.offset, l)), n);
+  const V3 t1 = tangent(n);
+  const V3 t2 = cross(n, t1);
+  store(j_a, row.j_a, l);
+  store(j_b, row.j_b, l);
+  store(t1, row.t, l);
+  const V inverse_mass = load(batch.inverse_mass_a, l) + load(batch.inverse_mass_b, l);
+  const V k_n = inverse_mass + dot(j_a, multiply(batch.inverse_I_a, l, j_a)) +
+                dot(j_b, multiply(batch.inverse_I_b, l, j_b));
+  store(hn::IfThenElseZero(used, one / hn::IfThenElse(used, k_n, one)), row.mass_n, l);
+  const Response k = tangential_response(batch, l, row, t1, t2);
+  const V determinant = hn::IfThenElse(used, k.k11 * k.k22 - k.k12 * k.k12, one);
+  store(hn::IfThenElseZero(used, k.k22 / determinant), row.k11, l);
+  store(hn::IfThenElseZero(used, zero() - k.k12 / determinant), row.k12, l);
+  store(hn::IfThenElseZero(used, k.k11 / determinant), row.k22, l);
+  const V mean = hn::Set(d, 0.5F) * (k.k11 + k.k22);
+  store(hn::IfThenElseZero(used, one / hn::IfThenElse(used, mean, one)), row.mass_t, l);
+  store(normal_velocity(l, row, m), row.approach, l);
+  const V3 start = {load(row.p_n, l), load(row.p_1, l), load(row.p_2, l)};
+  store(hn::Max(dot(start, n), zero()), row.p_n, l);
+  store(dot(start, t1), row.p_1, l);
+  store(dot(start, t2), row.p_2, l);
+}
+
+void Prepare(const SoftProblem& problem, std::size_t first, std::size_t count) {
+  for_each_group(problem, first, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
+    for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
+      prepare_row(batch, l, problem.rows[r], m);
+  });
+}
+
+void WarmStart(const SoftProblem& problem, std::size_t first, std::size_t count) {
+  for_each_group(problem, first, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
     for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r) {
-      const ContactRow& row = rows[r];
+      const ContactRow& row = problem.rows[r];
       push_normal(batch, l, row, load(row.p_n, l), m);
       const V3 t1 = load(row.t, l);
       const V3 t2 = cross(load(row.n, l), t1);
@@ -209,51 +355,47 @@ void WarmStart(SoftBody* bodies, const PairBatch* batches, std::size_t count,
       push_friction(batch, l, row,
                     {p_1 * t1.x + p_2 * t2.x, p_1 * t1.y + p_2 * t2.y, p_1 * t1.z + p_2 * t2.z}, m);
     }
-    scatter_pair(batch, l, m, bodies);
+    scatter_pair(batch, l, m, problem.bodies);
   });
 }
 
-template <bool kBiased>
-HWY_INLINE void sweep(SoftBody* bodies, const PairBatch* batches, std::size_t count,
-                      ContactRow* rows, float inverse_h) {
-  const V inverse = hn::Set(Tag(), inverse_h);
-  const auto everywhere = hn::FirstN(Tag(), kLanes);
-  for_each_group(bodies, batches, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
-    for (int visit = 0; visit < kVisitsPerSweep; ++visit) {
-      for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
-        solve_friction(batch, l, rows[r], everywhere, m);
-      for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
-        solve_normal<kBiased>(batch, l, rows[r], inverse, m);
-    }
-    scatter_pair(batch, l, m, bodies);
-  });
-}
-
-void SolveBiased(SoftBody* bodies, const PairBatch* batches, std::size_t count, ContactRow* rows,
-                 float inverse_h) {
-  sweep<true>(bodies, batches, count, rows, inverse_h);
-}
-
-void Relax(SoftBody* bodies, const PairBatch* batches, std::size_t count, ContactRow* rows,
-           float inverse_h) {
-  sweep<false>(bodies, batches, count, rows, inverse_h);
-}
-
-void AdvanceGaps(const SoftBody* bodies, const PairBatch* batches, std::size_t count,
-                 ContactRow* rows, float h) {
-  const V step = hn::Set(Tag(), h);
-  for_each_group(bodies, batches, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
+template <bool kBiased, bool kLast>
+HWY_INLINE void sweep(const SoftProblem& problem, std::size_t first, std::size_t count) {
+  const Tag d;
+  const V inverse_h = hn::Set(d, 1.0F) / hn::Set(d, problem.h);
+  const auto everywhere = hn::FirstN(d, kLanes);
+  for_each_group(problem, first, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
     for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
-      store(load(rows[r].gap, l) + step * normal_velocity(l, rows[r], m), rows[r].gap, l);
+      solve_friction(batch, l, problem.rows[r], everywhere, m);
+    for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r) {
+      ContactRow& row = problem.rows[r];
+      solve_normal<kBiased>(batch, l, row, inverse_h, m);
+      if constexpr (kLast) {
+        store(load(row.total_n, l) + load(row.p_n, l), row.total_n, l);
+        store(load(row.total_1, l) + load(row.p_1, l), row.total_1, l);
+        store(load(row.total_2, l) + load(row.p_2, l), row.total_2, l);
+      }
+    }
+    scatter_pair(batch, l, m, problem.bodies);
   });
 }
 
-void Restitution(SoftBody* bodies, const PairBatch* batches, std::size_t count, ContactRow* rows,
-                 float threshold) {
-  const V slow = hn::Set(Tag(), -threshold);
-  for_each_group(bodies, batches, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
+void AdvanceGaps(const SoftProblem& problem, std::size_t first, std::size_t count) {
+  const V step = hn::Set(Tag(), problem.h);
+  for_each_group(problem, first, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
+    for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r) {
+      ContactRow& row = problem.rows[r];
+      store(load(row.gap, l) + step * normal_velocity(l, row, m), row.gap, l);
+    }
+  });
+}
+
+void Restitution(const SoftProblem& problem, std::size_t first, std::size_t count) {
+  const V slow = hn::Set(Tag(), -problem.threshold);
+  for_each_group(problem, first, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
     const V e = load(batch.restitution, l);
     const std::uint32_t count_rows = batch.row_end - batch.row_begin;
+    ContactRow* rows = problem.rows;
     const auto bounces = [&](const ContactRow& row) {
       return hn::And(hn::And(hn::Lt(load(row.approach, l), slow), hn::Gt(e, zero())),
                      hn::Gt(load(row.total_n, l), zero()));
@@ -286,18 +428,36 @@ void Restitution(SoftBody* bodies, const PairBatch* batches, std::size_t count, 
         store(load(row.total_2, l) + (load(row.p_2, l) - old_2), row.total_2, l);
       }
     }
-    scatter_pair(batch, l, m, bodies);
+    scatter_pair(batch, l, m, problem.bodies);
   });
 }
 
-float Residual(const SoftBody* bodies, const PairBatch* batches, std::size_t count,
-               const ContactRow* rows, float inverse_h) {
+void Visit(SoftPass pass, const SoftProblem& problem, std::size_t first, std::size_t count) {
+  switch (pass) {
+    case SoftPass::prepare:
+      return Prepare(problem, first, count);
+    case SoftPass::warm_start:
+      return WarmStart(problem, first, count);
+    case SoftPass::biased:
+      return sweep<true, false>(problem, first, count);
+    case SoftPass::advance_gaps:
+      return AdvanceGaps(problem, first, count);
+    case SoftPass::relax:
+      return sweep<false, false>(problem, first, count);
+    case SoftPass::relax_last:
+      return sweep<false, true>(problem, first, count);
+    case SoftPass::restitution:
+      return Restitution(problem, first, count);
+  }
+}
+
+float Residual(const SoftProblem& problem, std::size_t count) {
   const Tag d;
-  const V inverse = hn::Set(d, inverse_h);
+  const V inverse = hn::Set(d, 1.0F) / hn::Set(d, problem.h);
   V worst = zero();
-  for_each_group(bodies, batches, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
+  for_each_group(problem, 0, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
     for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r) {
-      const ContactRow& row = rows[r];
+      const ContactRow& row = problem.rows[r];
       const V mass = load(row.mass_n, l);
       const V w = normal_velocity(l, row, m) + hn::Max(load(row.gap, l), zero()) * inverse;
       const auto used = hn::Gt(mass, zero());
@@ -315,46 +475,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace gotai::impulse {
 
-HWY_EXPORT(WarmStart);
-HWY_EXPORT(SolveBiased);
-HWY_EXPORT(Relax);
-HWY_EXPORT(AdvanceGaps);
-HWY_EXPORT(Restitution);
+HWY_EXPORT(Visit);
 HWY_EXPORT(Residual);
 
-void soft_warm_start(SoftBody* bodies, const PairBatch* batches, std::size_t count,
-                     const ContactRow* rows) {
-  HWY_DYNAMIC_DISPATCH(WarmStart)(bodies, batches, count, rows);
+void soft_pass(SoftPass pass, const SoftProblem& problem, std::size_t first, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(Visit)(pass, problem, first, count);
 }
-void soft_solve_biased(SoftBody* bodies, const PairBatch* batches, std::size_t count,
-                       ContactRow* rows, float inverse_h) {
-  HWY_DYNAMIC_DISPATCH(SolveBiased)(bodies, batches, count, rows, inverse_h);
-}
-void soft_relax(SoftBody* bodies, const PairBatch* batches, std::size_t count, ContactRow* rows,
-                float inverse_h) {
-  HWY_DYNAMIC_DISPATCH(Relax)(bodies, batches, count, rows, inverse_h);
-}
-void soft_advance_gaps(const SoftBody* bodies, const PairBatch* batches, std::size_t count,
-                       ContactRow* rows, float h) {
-  HWY_DYNAMIC_DISPATCH(AdvanceGaps)(bodies, batches, count, rows, h);
-}
-void soft_restitution(SoftBody* bodies, const PairBatch* batches, std::size_t count,
-                      ContactRow* rows, float threshold) {
-  HWY_DYNAMIC_DISPATCH(Restitution)(bodies, batches, count, rows, threshold);
-}
-float soft_residual(const SoftBody* bodies, const PairBatch* batches, std::size_t count,
-                    const ContactRow* rows, float inverse_h) {
-  return HWY_DYNAMIC_DISPATCH(Residual)(bodies, batches, count, rows, inverse_h);
-}
-
-void soft_accumulate(const PairBatch* batches, std::size_t count, ContactRow* rows) {
-  for (std::size_t k = 0; k < count; ++k)
-    for (std::uint32_t r = batches[k].row_begin; r < batches[k].row_end; ++r)
-      for (std::size_t l = 0; l < kLanes; ++l) {
-        rows[r].total_n.value[l] += rows[r].p_n.value[l];
-        rows[r].total_1.value[l] += rows[r].p_1.value[l];
-        rows[r].total_2.value[l] += rows[r].p_2.value[l];
-      }
+float soft_residual(const SoftProblem& problem, std::size_t count) {
+  return HWY_DYNAMIC_DISPATCH(Residual)(problem, count);
 }
 
 }  // namespace gotai::impulse

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <tuple>
 
 #include "gotai/core/parallel.h"
 #include "gotai/impulse/lanes.h"
@@ -12,12 +11,20 @@ namespace gotai::impulse {
 namespace {
 
 // Smallest numbers worth a task of their own.
-constexpr std::size_t kBatchGrain = 8;  // about 10 us of a sweep
-constexpr std::size_t kPairGrain = 32;
+constexpr std::size_t kBatchGrain = 2;
+constexpr std::size_t kPairGrain = 64;
 constexpr std::size_t kBodyGrain = 256;
+constexpr std::size_t kLeastPerWave = 3;  // batches, about 1 us each
 
 constexpr int kSubsteps = 8;
-constexpr int kRelaxSweeps = 2;
+// Islands of at most so many contacts are stacks.
+constexpr std::uint32_t kLargestStack = 256;
+// By kind of island. Ten sweeps of either sort let ten cubes stand on top of each other.
+struct Sweeps {
+  std::uint32_t biased;
+  std::uint32_t relax;
+};
+constexpr std::array<Sweeps, kIslandKinds> kSweeps = {{{10, 10}, {2, 4}, {1, 2}}};
 // Overlap recovers like a spring with half of the sub-step rate, heavily damped (doubled against
 // bodies that do not move). A quarter leaves piles half as deep again in each other.
 constexpr double kDampingRatio = 10.0;
@@ -36,22 +43,6 @@ Softness softness(double frequency_hz, double h) {
   const double a2 = h * omega * a1;
   const double a3 = 1.0 / (1.0 + a2);
   return {omega / a1, a2 * a3, a3};
-}
-
-/// Calls kernel(first, count) for consecutive groups of batches [begin, end), on any thread.
-template <typename Kernel>
-void for_batches(std::size_t begin, std::size_t end, const Kernel& kernel) {
-  const std::size_t groups = (end - begin + kBatchGrain - 1) / kBatchGrain;
-  parallel_for(groups, 1, [&](std::size_t g) {
-    const std::size_t first = begin + g * kBatchGrain;
-    kernel(first, std::min(kBatchGrain, end - first));
-  });
-}
-
-/// A unit vector across n that turns smoothly with it on each side of the switch.
-Vec3 tangent(const Vec3& n) {
-  const Vec3 axis = std::abs(n.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY();
-  return n.cross(axis).normalized();
 }
 
 SoftBody to_soft(const Vec3& v, const Vec3& w) {
@@ -88,143 +79,132 @@ void SubsteppedConstraint::prepare(const model::BodyState& bodies,
                                    const model::ContactMemory& memory) {
   contacts_ = &contacts;
   plan_ = plan;
-  counts_.resize(contacts.pairs.size());
-  for (std::size_t p = 0; p < contacts.pairs.size(); ++p) counts_[p] = contacts.pairs[p].size();
-  lay_out_batches(bodies, materials);
-  fill_rows(bodies);
-  load_warm_start(memory);
+  lay_out_batches(bodies);
+  find_memories(memory);
+  read_velocities(bodies);
+  parallel_for(batches_.size(), kBatchGrain, [&](std::size_t k) {
+    fill_batch(k, bodies, materials);
+    const PairBatch& batch = batches_[k];
+    for (std::uint32_t lane = 0; lane < batch.lanes; ++lane)
+      fill_rows(schedule_->pair[batch_pairs_[k] + lane], lane, batch.row_begin, bodies, memory);
+    soft_pass(SoftPass::prepare, problem(), k, 1);
+  });
   share_loads(bodies);
   report_ = {};
-  report_.rows = static_cast<std::uint32_t>(slots_.size());
+  report_.rows = static_cast<std::uint32_t>(contacts.size());
   report_.substeps = static_cast<std::uint32_t>(plan.substeps);
-  report_.iterations = static_cast<std::uint32_t>(plan.substeps * (1 + kRelaxSweeps));
+  for (std::size_t kind = 0; kind < kIslandKinds; ++kind) {
+    if (waves_[kind].empty()) continue;
+    const auto [biased, relax] = kSweeps[kind];
+    report_.iterations = std::max(report_.iterations, report_.substeps * (biased + relax));
+  }
 }
 
-void SubsteppedConstraint::lay_out_batches(const model::BodyState& bodies,
-                                           const model::MaterialTable& materials) {
-  const ContactSchedule& schedule = scheduler_.build(bodies, *contacts_, counts_);
-  const double h = plan_.substep_dt();
-  const Softness moving = softness(kFrequencyShare / h, h);
-  const Softness fixed = softness(2.0 * kFrequencyShare / h, h);
+void SubsteppedConstraint::lay_out_batches(const model::BodyState& bodies) {
+  schedule_ = &scheduler_.build(bodies, *contacts_, kLargestStack);
   batches_.clear();
-  wave_end_.clear();
+  batch_pairs_.clear();
   slots_.resize(contacts_->size());
+  for (std::vector<Range>& waves : waves_) waves.clear();
   std::uint32_t rows = 0;
-  for (std::size_t wave = 0; wave < schedule.waves(); ++wave) {
-    for (std::uint32_t first = schedule.wave_begin[wave]; first < schedule.wave_begin[wave + 1];
-         first += kLanes) {
+  std::size_t kind = 0;
+  for (std::uint32_t wave = 0; wave < schedule_->waves(); ++wave) {
+    while (wave >= schedule_->kind_begin[kind + 1]) ++kind;
+    const auto first_batch = static_cast<std::uint32_t>(batches_.size());
+    const std::uint32_t end = schedule_->wave_begin[wave + 1];
+    for (std::uint32_t first = schedule_->wave_begin[wave]; first < end; first += kLanes) {
       PairBatch& batch = batches_.emplace_back();
+      batch_pairs_.push_back(first);
+      batch.lanes = std::min(static_cast<std::uint32_t>(kLanes), end - first);
       batch.row_begin = rows;
-      const std::uint32_t last =
-          std::min(first + static_cast<std::uint32_t>(kLanes), schedule.wave_begin[wave + 1]);
       std::uint32_t longest = 0;
-      for (std::uint32_t k = first; k < last; ++k) {
-        const std::size_t l = k - first;
-        const model::ContactPair& pair = contacts_->pairs[schedule.pair[k]];
-        const model::BodyIndex a = pair.body_a;
-        const model::BodyIndex b = pair.body_b;
-        batch.body_a[l] = static_cast<std::int32_t>(a) + 1;
-        batch.body_b[l] = static_cast<std::int32_t>(b) + 1;
-        if (bodies.is_dynamic(a)) batch.dynamic_a |= 1U << l;
-        if (bodies.is_dynamic(b)) batch.dynamic_b |= 1U << l;
-        set(batch.inverse_mass_a, l, bodies.inverse_mass[a]);
-        set(batch.inverse_mass_b, l, bodies.inverse_mass[b]);
-        set(batch.inverse_I_a, l, bodies.inverse_I_W[a]);
-        set(batch.inverse_I_b, l, bodies.inverse_I_W[b]);
-        const model::SurfacePair surface =
-            materials.combine(bodies.material[a], bodies.material[b]);
-        set(batch.friction, l, surface.friction);
-        set(batch.restitution, l, surface.restitution);
-        const bool both_move = bodies.is_dynamic(a) && bodies.is_dynamic(b);
-        const Softness& soft = both_move ? moving : fixed;
-        set(batch.bias_rate, l, soft.bias_rate);
-        set(batch.mass_scale, l, soft.mass_scale);
-        set(batch.impulse_scale, l, soft.impulse_scale);
-        // Three diameters of the smaller body per second: deep overlaps part without a bang.
-        const double size = both_move
-                                ? std::min(bodies.bounding_radius[a], bodies.bounding_radius[b])
-                                : std::max(bodies.bounding_radius[a], bodies.bounding_radius[b]);
-        set(batch.push_limit, l, 6.0 * size);
+      for (std::uint32_t lane = 0; lane < batch.lanes; ++lane) {
+        const model::ContactPair& pair = contacts_->pairs[schedule_->pair[first + lane]];
         for (std::uint32_t c = pair.begin; c < pair.end; ++c)
-          slots_[c] = {c, rows + (c - pair.begin), static_cast<std::uint32_t>(l)};
+          slots_[c] = {rows + (c - pair.begin), lane};
         longest = std::max(longest, pair.size());
       }
       rows += longest;
       batch.row_end = rows;
     }
-    wave_end_.push_back(batches_.size());
+    waves_[kind].push_back({first_batch, static_cast<std::uint32_t>(batches_.size())});
   }
   rows_.assign(rows, ContactRow{});
 }
 
-void SubsteppedConstraint::fill_rows(const model::BodyState& bodies) {
-  parallel_for(contacts_->pairs.size(), kPairGrain, [&](std::size_t p) {
-    const model::ContactPair& pair = contacts_->pairs[p];
+void SubsteppedConstraint::fill_batch(std::size_t k, const model::BodyState& bodies,
+                                      const model::MaterialTable& materials) {
+  const double h = plan_.substep_dt();
+  const Softness moving = softness(kFrequencyShare / h, h);
+  const Softness fixed = softness(2.0 * kFrequencyShare / h, h);
+  PairBatch& batch = batches_[k];
+  for (std::uint32_t l = 0; l < batch.lanes; ++l) {
+    const model::ContactPair& pair = contacts_->pairs[schedule_->pair[batch_pairs_[k] + l]];
     const model::BodyIndex a = pair.body_a;
     const model::BodyIndex b = pair.body_b;
-    const Mat3& inverse_I_a = bodies.inverse_I_W[a];
-    const Mat3& inverse_I_b = bodies.inverse_I_W[b];
-    const double inverse_mass = bodies.inverse_mass[a] + bodies.inverse_mass[b];
-    for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-      ContactRow& row = rows_[slots_[c].row];
-      const std::size_t l = slots_[c].lane;
-      const Vec3& n = contacts_->normal_W[c];
-      const Vec3 r_a = contacts_->point_W[c] - bodies.x_W[a];
-      const Vec3 r_b = contacts_->point_W[c] - bodies.x_W[b];
-      const Vec3 f_a = contacts_->friction_W[c] - bodies.x_W[a];
-      const Vec3 f_b = contacts_->friction_W[c] - bodies.x_W[b];
-      const Vec3 t1 = tangent(n);
-      const Vec3 t2 = n.cross(t1);
-      const Vec3 j_a = r_a.cross(n);
-      const Vec3 j_b = r_b.cross(n);
-      const auto coupling = [&](const Vec3& u, const Vec3& v) {
-        return f_a.cross(u).dot(inverse_I_a * f_a.cross(v)) +
-               f_b.cross(u).dot(inverse_I_b * f_b.cross(v));
-      };
-      const double k_11 = inverse_mass + coupling(t1, t1);
-      const double k_22 = inverse_mass + coupling(t2, t2);
-      const double k_12 = coupling(t1, t2);
-      const double determinant = k_11 * k_22 - k_12 * k_12;
-      set(row.n, l, n);
-      set(row.j_a, l, j_a);
-      set(row.j_b, l, j_b);
-      set(row.t, l, t1);
-      set(row.f_a, l, f_a);
-      set(row.f_b, l, f_b);
-      set(row.gap, l, contacts_->gap[c]);
-      set(row.mass_n, l,
-          1.0 / (inverse_mass + j_a.dot(inverse_I_a * j_a) + j_b.dot(inverse_I_b * j_b)));
-      set(row.k11, l, k_22 / determinant);
-      set(row.k12, l, -k_12 / determinant);
-      set(row.k22, l, k_11 / determinant);
-      set(row.mass_t, l, 2.0 / (k_11 + k_22));
-      const Vec3 v = bodies.v_W[a] - bodies.v_W[b];
-      set(row.approach, l, n.dot(v) + j_a.dot(bodies.w_W[a]) - j_b.dot(bodies.w_W[b]));
-    }
-  });
+    batch.body_a[l] = a + 1;
+    batch.body_b[l] = b + 1;
+    if (bodies.is_dynamic(a)) batch.dynamic_a |= 1U << l;
+    if (bodies.is_dynamic(b)) batch.dynamic_b |= 1U << l;
+    set(batch.offset, l, bodies.x_W[a] - bodies.x_W[b]);
+    set(batch.inverse_mass_a, l, bodies.inverse_mass[a]);
+    set(batch.inverse_mass_b, l, bodies.inverse_mass[b]);
+    set(batch.inverse_I_a, l, bodies.inverse_I_W[a]);
+    set(batch.inverse_I_b, l, bodies.inverse_I_W[b]);
+    const model::SurfacePair surface = materials.combine(bodies.material[a], bodies.material[b]);
+    set(batch.friction, l, surface.friction);
+    set(batch.restitution, l, surface.restitution);
+    const bool both_move = bodies.is_dynamic(a) && bodies.is_dynamic(b);
+    const Softness& soft = both_move ? moving : fixed;
+    set(batch.bias_rate, l, soft.bias_rate);
+    set(batch.mass_scale, l, soft.mass_scale);
+    set(batch.impulse_scale, l, soft.impulse_scale);
+    // Three diameters of the smaller body per second: deep overlaps part without a bang.
+    const double size = both_move ? std::min(bodies.bounding_radius[a], bodies.bounding_radius[b])
+                                  : std::max(bodies.bounding_radius[a], bodies.bounding_radius[b]);
+    set(batch.push_limit, l, 6.0 * size);
+  }
 }
 
-void SubsteppedConstraint::load_warm_start(const model::ContactMemory& memory) {
-  // Both lists are sorted by (body_a, body_b, feature): one merge.
-  std::size_t m = 0;
-  for (const model::ContactPair& pair : contacts_->pairs)
-    for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-      const auto key = std::tuple(pair.body_a, pair.body_b, contacts_->feature[c]);
-      while (m < memory.entries.size() &&
-             std::tuple(memory.entries[m].body_a, memory.entries[m].body_b,
-                        memory.entries[m].feature) < key)
-        ++m;
-      if (m == memory.entries.size()) return;
-      const model::ContactMemory::Entry& entry = memory.entries[m];
-      if (std::tuple(entry.body_a, entry.body_b, entry.feature) != key) continue;
-      ContactRow& row = rows_[slots_[c].row];
-      const std::size_t l = slots_[c].lane;
-      const Vec3 n = contacts_->normal_W[c];
-      const Vec3 t1 = tangent(n);
-      set(row.p_n, l, std::max(0.0, entry.impulse_W.dot(n)));
-      set(row.p_1, l, entry.impulse_W.dot(t1));
-      set(row.p_2, l, entry.impulse_W.dot(n.cross(t1)));
-    }
+void SubsteppedConstraint::fill_rows(std::uint32_t p, std::size_t lane, std::uint32_t row_begin,
+                                     const model::BodyState& bodies,
+                                     const model::ContactMemory& memory) {
+  const model::ContactPair& pair = contacts_->pairs[p];
+  const Vec3& x_a = bodies.x_W[pair.body_a];
+  auto [m, end] = memory_of_[p];
+  for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
+    ContactRow& row = rows_[row_begin + (c - pair.begin)];
+    set(row.n, lane, contacts_->normal_W[c]);
+    set(row.j_a, lane, contacts_->point_W[c] - x_a);
+    set(row.f_a, lane, contacts_->friction_W[c] - x_a);
+    set(row.gap, lane, contacts_->gap[c]);
+    while (m < end && memory.entries[m].feature < contacts_->feature[c]) ++m;
+    if (m == end || memory.entries[m].feature != contacts_->feature[c]) continue;
+    const Vec3& impulse = memory.entries[m].impulse_W;
+    set(row.p_n, lane, impulse.x());
+    set(row.p_1, lane, impulse.y());
+    set(row.p_2, lane, impulse.z());
+  }
+}
+
+void SubsteppedConstraint::find_memories(const model::ContactMemory& memory) {
+  const auto key = [](model::BodyIndex a, model::BodyIndex b) {
+    return static_cast<std::uint64_t>(a) << 32U | b;
+  };
+  const auto key_of = [&](std::uint32_t k) {
+    return key(memory.entries[k].body_a, memory.entries[k].body_b);
+  };
+  // Pairs and entries are sorted by (body_a, body_b).
+  const auto count = static_cast<std::uint32_t>(memory.entries.size());
+  memory_of_.resize(contacts_->pairs.size());
+  std::uint32_t m = 0;
+  for (std::size_t p = 0; p < contacts_->pairs.size(); ++p) {
+    const std::uint64_t wanted = key(contacts_->pairs[p].body_a, contacts_->pairs[p].body_b);
+    while (m < count && key_of(m) < wanted) ++m;
+    memory_of_[p].begin = m;
+    while (m < count && key_of(m) == wanted) ++m;
+    memory_of_[p].end = m;
+  }
 }
 
 void SubsteppedConstraint::read_velocities(const model::BodyState& bodies) {
@@ -252,79 +232,96 @@ void SubsteppedConstraint::write_changes(const model::BodyState& bodies,
   });
 }
 
-template <typename Kernel>
-void SubsteppedConstraint::for_waves(const Kernel& kernel) {
-  if (thread_count() == 1) return kernel(0, batches_.size());
-  std::size_t begin = 0;
-  for (const std::size_t end : wave_end_) {
-    for_batches(begin, end, kernel);
-    begin = end;
-  }
+SoftProblem SubsteppedConstraint::problem() {
+  return {velocity_.data(), batches_.data(), rows_.data(), static_cast<float>(plan_.substep_dt()),
+          static_cast<float>(2.0 * settings_.gravity.norm() * plan_.dt)};
+}
+
+void SubsteppedConstraint::add_waves(std::size_t kind, SoftPass pass) {
+  for (const Range& wave : waves_[kind])
+    stages_.push_back({pass, wave.begin, wave.end - wave.begin});
+}
+
+void SubsteppedConstraint::add_at_once(SoftPass pass) {
+  stages_.push_back({pass, 0, static_cast<std::uint32_t>(batches_.size())});
+}
+
+void SubsteppedConstraint::run_passes() {
+  const SoftProblem all = problem();
+  run_stages(stages_, kLeastPerWave, [&](SoftPass pass, std::uint32_t first, std::uint32_t count) {
+    soft_pass(pass, all, first, count);
+  });
+  stages_.clear();
 }
 
 void SubsteppedConstraint::solve(const model::BodyState& bodies, const std::vector<double>& /*gap*/,
                                  model::Update& update) {
   read_velocities(bodies);
-  const auto inverse_h = static_cast<float>(1.0 / plan_.substep_dt());
-  for_waves([&](std::size_t first, std::size_t count) {
-    soft_warm_start(velocity_.data(), batches_.data() + first, count, rows_.data());
-  });
-  for_waves([&](std::size_t first, std::size_t count) {
-    soft_solve_biased(velocity_.data(), batches_.data() + first, count, rows_.data(), inverse_h);
-  });
+  for (std::size_t kind = 0; kind < kIslandKinds; ++kind) {
+    add_waves(kind, SoftPass::warm_start);
+    for (std::uint32_t n = 0; n < kSweeps[kind].biased; ++n) add_waves(kind, SoftPass::biased);
+  }
+  run_passes();
   write_changes(bodies, update);
 }
 
 void SubsteppedConstraint::relax(const model::BodyState& bodies, model::Update& update) {
   read_velocities(bodies);
-  const double h = plan_.substep_dt();
-  for_batches(0, batches_.size(), [&](std::size_t first, std::size_t count) {
-    soft_advance_gaps(velocity_.data(), batches_.data() + first, count, rows_.data(),
-                      static_cast<float>(h));
-  });
-  for (int sweep = 0; sweep < kRelaxSweeps; ++sweep)
-    for_waves([&](std::size_t first, std::size_t count) {
-      soft_relax(velocity_.data(), batches_.data() + first, count, rows_.data(),
-                 static_cast<float>(1.0 / h));
-    });
-  for_batches(0, batches_.size(), [&](std::size_t first, std::size_t count) {
-    soft_accumulate(batches_.data() + first, count, rows_.data());
-  });
+  add_at_once(SoftPass::advance_gaps);
+  for (std::size_t kind = 0; kind < kIslandKinds; ++kind) {
+    for (std::uint32_t n = 1; n < kSweeps[kind].relax; ++n) add_waves(kind, SoftPass::relax);
+    add_waves(kind, SoftPass::relax_last);
+  }
+  run_passes();
   write_changes(bodies, update);
+}
+
+Vec3 SubsteppedConstraint::impulse_of(std::uint32_t contact, Lane ContactRow::*p_n,
+                                      Lane ContactRow::*p_1, Lane ContactRow::*p_2) const {
+  const auto& [r, lane] = slots_[contact];
+  const ContactRow& row = rows_[r];
+  const Vec3 normal = get(row.n, lane);
+  const Vec3 t1 = get(row.t, lane);
+  return (row.*p_n).value[lane] * normal + (row.*p_1).value[lane] * t1 +
+         (row.*p_2).value[lane] * normal.cross(t1);
+}
+
+void SubsteppedConstraint::remember(model::ContactMemory& memory) {
+  // Also contacts that only carried for a while: forgotten, they may be left out of the next step's
+  // reduction and found again a step later, deeper.
+  const auto carried = [&](std::uint32_t c) {
+    return rows_[slots_[c].row].total_n.value[slots_[c].lane] > 0.0F;
+  };
+  const std::vector<model::ContactPair>& pairs = contacts_->pairs;
+  entry_of_.assign(pairs.size() + 1, 0);
+  parallel_for(pairs.size(), kPairGrain, [&](std::size_t p) {
+    for (std::uint32_t c = pairs[p].begin; c < pairs[p].end; ++c)
+      entry_of_[p + 1] += carried(c) ? 1U : 0U;
+  });
+  for (std::size_t p = 0; p < pairs.size(); ++p) entry_of_[p + 1] += entry_of_[p];
+  memory.entries.resize(entry_of_.back());
+  parallel_for(pairs.size(), kPairGrain, [&](std::size_t p) {
+    std::uint32_t m = entry_of_[p];
+    for (std::uint32_t c = pairs[p].begin; c < pairs[p].end; ++c) {
+      if (!carried(c)) continue;
+      memory.entries[m++] = {pairs[p].body_a, pairs[p].body_b, contacts_->feature[c],
+                             impulse_of(c, &ContactRow::p_n, &ContactRow::p_1, &ContactRow::p_2)};
+    }
+  });
 }
 
 void SubsteppedConstraint::finish(const model::BodyState& bodies, model::Update& update,
                                   model::ContactMemory& memory) {
-  memory.entries.clear();
-  const auto impulse_of = [&](const Slot& slot, const Lane& n, const Lane& a, const Lane& b) {
-    const ContactRow& row = rows_[slot.row];
-    const Vec3 normal = get(row.n, slot.lane);
-    const Vec3 t1 = get(row.t, slot.lane);
-    return Vec3(n.value[slot.lane] * normal + a.value[slot.lane] * t1 +
-                b.value[slot.lane] * normal.cross(t1));
-  };
-  for (const model::ContactPair& pair : contacts_->pairs)
-    for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-      const ContactRow& row = rows_[slots_[c].row];
-      // Also contacts that only carried for a while: forgotten, they may be left out of the next
-      // step's reduction and found again a step later, deeper.
-      if (row.total_n.value[slots_[c].lane] <= 0.0F) continue;
-      memory.entries.push_back({pair.body_a, pair.body_b, contacts_->feature[c],
-                                impulse_of(slots_[c], row.p_n, row.p_1, row.p_2)});
-    }
+  remember(memory);
   read_velocities(bodies);
-  const double h = plan_.substep_dt();
-  report_.residual = soft_residual(velocity_.data(), batches_.data(), batches_.size(), rows_.data(),
-                                   static_cast<float>(1.0 / h));
-  for_waves([&](std::size_t first, std::size_t count) {
-    soft_restitution(velocity_.data(), batches_.data() + first, count, rows_.data(),
-                     static_cast<float>(2.0 * settings_.gravity.norm() * plan_.dt));
-  });
+  report_.residual = soft_residual(problem(), batches_.size());
+  for (std::size_t kind = 0; kind < kIslandKinds; ++kind) add_waves(kind, SoftPass::restitution);
+  run_passes();
   write_changes(bodies, update);
-  parallel_for(slots_.size(), kBodyGrain, [&](std::size_t k) {
-    const Slot& slot = slots_[k];
-    const ContactRow& row = rows_[slot.row];
-    update.contact_impulse[slot.contact] = impulse_of(slot, row.total_n, row.total_1, row.total_2);
+  parallel_for(contacts_->size(), kBodyGrain, [&](std::size_t k) {
+    const auto c = static_cast<std::uint32_t>(k);
+    update.contact_impulse[c] =
+        impulse_of(c, &ContactRow::total_n, &ContactRow::total_1, &ContactRow::total_2);
   });
 }
 

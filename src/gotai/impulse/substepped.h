@@ -1,12 +1,14 @@
 /// @file
-/// The fast contact solver: soft constraints in sub-steps, eight pairs at a time.
+/// The fast contact solver: soft constraints in sub-steps, sixteen pairs at a time.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "gotai/impulse/contact_schedule.h"
 #include "gotai/impulse/method.h"
 #include "gotai/impulse/soft_kernel.h"
+#include "gotai/impulse/stages.h"
 
 namespace gotai::impulse {
 
@@ -15,7 +17,9 @@ namespace gotai::impulse {
 ///
 /// Every sub-step warm starts, solves once with overlap recovery as a stiff damped spring, moves
 /// the bodies, and relaxes twice without it, so that recovery adds no energy. Restitution comes
-/// once, at the end of the step.
+/// once, at the end of the step. Stacks, small islands of bodies on bodies, are swept many times:
+/// there sweeps are cheap, and tall stacks need them. Overlap recovery drives slow modes, such as
+/// the sway of a stack, in every sub-step; they grow where sweeps damp them less than that.
 ///
 /// Reads: all contacts, or the reduced ones; contacts may exist before touching.
 /// Guarantees: impulses push, friction stays in the cone, cost linear in contacts, the same bits
@@ -37,16 +41,27 @@ class SubsteppedConstraint final : public ImpulseMethod {
   model::SolveReport report() const override { return report_; }
 
  private:
-  /// Where contact i of the solve sits: row and lane.
+  /// Where a contact sits: row and lane.
   struct Slot {
-    std::uint32_t contact = 0;  ///< index into ContactSet
     std::uint32_t row = 0;
     std::uint32_t lane = 0;
   };
+  struct Range {
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+  };
 
-  void lay_out_batches(const model::BodyState& bodies, const model::MaterialTable& materials);
-  void fill_rows(const model::BodyState& bodies);
-  void load_warm_start(const model::ContactMemory& memory);
+  void lay_out_batches(const model::BodyState& bodies);
+  void fill_batch(std::size_t k, const model::BodyState& bodies,
+                  const model::MaterialTable& materials);
+  void fill_rows(std::uint32_t p, std::size_t lane, std::uint32_t row_begin,
+                 const model::BodyState& bodies, const model::ContactMemory& memory);
+  /// Where the entries of every pair are in the memory.
+  void find_memories(const model::ContactMemory& memory);
+  void remember(model::ContactMemory& memory);
+  /// Impulse of a contact [N s], W. @param p  its parts along n, t and n x t
+  Vec3 impulse_of(std::uint32_t contact, Lane ContactRow::*p_n, Lane ContactRow::*p_1,
+                  Lane ContactRow::*p_2) const;
   /// Moves the warm start of each pair towards the impulses of equal wrench that press evenly, by
   /// area: redundant contacts share the load, as under a uniform tiny compliance (erratum 23).
   /// Only of pairs that slide: there pressure decides the torque of friction. At rest it would
@@ -56,10 +71,13 @@ class SubsteppedConstraint final : public ImpulseMethod {
   /// Shifts a sliding pair's friction so that its centre is that of the pressure: the points that
   /// friction acts at stand for areas, and under uneven pressure they would turn the body.
   void centre_friction(const model::ContactPair& pair);
-  /// Calls kernel(first batch, count): wave after wave, the batches of one on any thread. They
-  /// share no dynamic body, so the bits do not depend on the threads.
-  template <typename Kernel>
-  void for_waves(const Kernel& kernel);
+
+  SoftProblem problem();
+  /// Adds passes wave after wave: batches of a wave share no dynamic body, so the bits do not
+  /// depend on the threads.
+  void add_waves(std::size_t kind, SoftPass pass);
+  void add_at_once(SoftPass pass);
+  void run_passes();
   void read_velocities(const model::BodyState& bodies);
   void write_changes(const model::BodyState& bodies, model::Update& update) const;
 
@@ -68,13 +86,17 @@ class SubsteppedConstraint final : public ImpulseMethod {
   model::SolveReport report_;
   const model::ContactSet* contacts_ = nullptr;
   ContactScheduler scheduler_;
-  std::vector<std::uint32_t> counts_;  // contacts per pair
-  std::vector<PairBatch> batches_;     // wave by wave
-  std::vector<std::size_t> wave_end_;  // into batches_
+  const ContactSchedule* schedule_ = nullptr;
+  std::vector<PairBatch> batches_;
+  std::vector<std::uint32_t> batch_pairs_;  // first pair of every batch in the schedule's order
+  std::array<std::vector<Range>, kIslandKinds> waves_;  // of batches_, by IslandKind
+  std::vector<Stage<SoftPass>> stages_;
   std::vector<ContactRow> rows_;
-  std::vector<Slot> slots_;         // in contact order
-  std::vector<SoftBody> velocity_;  // working copy; entry 0 is padding, body i is entry i + 1
-  std::vector<SoftBody> before_;    // as read from the state
+  std::vector<Slot> slots_;              // per contact
+  std::vector<Range> memory_of_;         // per pair, into the memory
+  std::vector<std::uint32_t> entry_of_;  // per pair + 1: first entry of the next step's memory
+  std::vector<SoftBody> velocity_;       // working copy; entry 0 is padding, body i is entry i + 1
+  std::vector<SoftBody> before_;         // as read from the state
 };
 
 }  // namespace gotai::impulse

@@ -96,7 +96,6 @@ void SubsteppedConstraint::centre_friction(const model::ContactPair& pair) {
     ContactRow& row = rows_[slots_[c].row];
     const std::size_t l = slots_[c].lane;
     set(row.f_a, l, get(row.f_a, l) + offset);
-    set(row.f_b, l, get(row.f_b, l) + offset);
   }
 }
 
