@@ -1,7 +1,5 @@
 #include "gotai/dynamics/integrate.h"
 
-#include <cmath>
-
 #include "gotai/core/parallel.h"
 #include "gotai/dynamics/rotation.h"
 
@@ -10,36 +8,37 @@ namespace {
 
 constexpr std::size_t kGrain = 256;  // bodies per task: a body costs about 0.1 us
 
-Quat axis_rotation(int axis, double angle) {
-  Quat q(std::cos(0.5 * angle), 0.0, 0.0, 0.0);
-  q.vec()[axis] = std::sin(0.5 * angle);
-  return q;
-}
-
 /// Torque-free rotation that conserves L. The kinetic energy is split into a sphere with the middle
 /// principal moment, whose flow turns about the fixed L exactly, and the two remaining axes, whose
 /// flows turn about a body axis exactly; Strang composition of these is symplectic, of second
 /// order, and exact for spheres and symmetric tops (erratum 26).
 Quat rotate_free(const model::BodyState& bodies, model::BodyIndex i, double dt) {
-  const Vec3& moments = bodies.principal_moments[i];
-  const Quat& q_WB = bodies.q_WB[i];
-  const Quat& q_BP = bodies.q_BP[i];
-  const double inverse_middle = 1.0 / moments[1];
-  Vec3 L_P = q_BP.conjugate() * (q_WB.conjugate() * bodies.L_W[i]);
+  const Vec3 inverse_moments = bodies.principal_moments[i].cwiseInverse();
+  const Quat q_WP = bodies.q_WB[i] * bodies.q_BP[i];
+  Vec3 L_P = q_WP.conjugate() * bodies.L_W[i];
   Quat turn_P = Quat::Identity();
-  const auto turn = [&](int axis, double time) {
-    const double angle = time * (1.0 / moments[axis] - inverse_middle) * L_P[axis];
-    const Quat rotation = axis_rotation(axis, angle);
-    turn_P = turn_P * rotation;
-    L_P = rotation.conjugate() * L_P;
+  // Turns about a principal axis, with the coordinates across it in positive order.
+  const auto turn = [&](int axis, int next, int last, double time) {
+    const double half_angle = 0.5 * time * (inverse_moments[axis] - inverse_moments[1]) * L_P[axis];
+    const auto [c, sinc] = cosine_and_sinc(half_angle * half_angle);
+    const double s = half_angle * sinc;
+    const double w = turn_P.w();
+    const Vec3 v = turn_P.vec();
+    turn_P.w() = w * c - v[axis] * s;
+    turn_P.vec()[axis] = w * s + v[axis] * c;
+    turn_P.vec()[next] = v[next] * c + v[last] * s;
+    turn_P.vec()[last] = v[last] * c - v[next] * s;
+    const double cosine = c * c - s * s;
+    const double sine = 2.0 * c * s;
+    const double L_next = L_P[next];
+    L_P[next] = cosine * L_next + sine * L_P[last];
+    L_P[last] = cosine * L_P[last] - sine * L_next;
   };
-  turn(0, 0.5 * dt);
-  turn(2, dt);
-  turn(0, 0.5 * dt);
-  Quat turn_B = turn_P;
-  turn_B.vec() = q_BP * turn_P.vec();
-  const Vec3 sphere_spin = inverse_middle * bodies.L_W[i];
-  return (rotation_increment(sphere_spin, dt) * q_WB * turn_B).normalized();
+  turn(0, 1, 2, 0.5 * dt);
+  turn(2, 0, 1, dt);
+  turn(0, 1, 2, 0.5 * dt);
+  const Quat sphere = rotation_increment(inverse_moments[1] * bodies.L_W[i], dt);
+  return (sphere * (q_WP * turn_P) * bodies.q_BP[i].conjugate()).normalized();
 }
 
 }  // namespace

@@ -60,7 +60,12 @@ void refresh_derived(BodyState& bodies, BodyIndex index) {
   if (!bodies.is_dynamic(index)) return;
   const Mat3 R_WP = (bodies.q_WB[index] * bodies.q_BP[index]).toRotationMatrix();
   const Vec3 inverse_moments = bodies.principal_moments[index].cwiseInverse();
-  bodies.inverse_I_W[index] = R_WP * inverse_moments.asDiagonal() * R_WP.transpose();
+  const Mat3 scaled = R_WP * inverse_moments.asDiagonal();
+  Mat3& inverse_I_W = bodies.inverse_I_W[index];
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c <= r; ++c)
+      inverse_I_W(r, c) = inverse_I_W(c, r) =
+          scaled(r, 0) * R_WP(c, 0) + scaled(r, 1) * R_WP(c, 1) + scaled(r, 2) * R_WP(c, 2);
   bodies.w_W[index] = bodies.inverse_I_W[index] * bodies.L_W[index];
 }
 
