@@ -6,12 +6,8 @@ namespace gotai::collision {
 
 bool is_near_anchor(const model::ContactAnchors::Pair& anchor, const model::BodyState& bodies,
                     const PairMotion& motion, double reach) {
-  const model::BodyIndex a = anchor.body_a;
-  const model::BodyIndex b = anchor.body_b;
-  const Pose X_BA = relative_pose({bodies.x_W[b], bodies.q_WB[b]}, {bodies.x_W[a], bodies.q_WB[a]});
-  // A turn by t moves points at a distance r from its axis by 2 r sin(t / 2).
-  const double turned = 2.0 * (anchor.X_BA.q.conjugate() * X_BA.q).vec().norm();
-  const double moved = (X_BA.p - anchor.X_BA.p).norm() + turned * bodies.bounding_radius[a];
+  const double moved = displacement(anchor.X_BA, body_pose(bodies, {anchor.body_a, anchor.body_b}),
+                                    bodies.bounding_radius[anchor.body_a]);
   return moved + motion.farthest() <= kAnchorTolerance * motion.size() &&
          reach + moved <= anchor.reach;
 }

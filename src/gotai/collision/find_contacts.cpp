@@ -135,7 +135,7 @@ void CollisionCache::Storage::carry_over_memories(const model::BodyState& bodies
   for (std::size_t p = 0; p < candidates.size(); ++p) {
     Remembered& now = remembered[p];
     now.pair = candidates[p];
-    for (NearSamples& near : now.near) near.forget();
+    now.near.forget();
     const std::array<std::uint32_t, 2> shape = {bodies.shape[now.pair.body_a],
                                                 bodies.shape[now.pair.body_b]};
     now.shape = shape;

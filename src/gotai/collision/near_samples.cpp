@@ -35,21 +35,26 @@ float displacement(const SamplePose& from, const SamplePose& to, float radius) {
   return std::sqrt(moved) + std::sqrt(turned) * radius;  // Frobenius norm >= spectral norm
 }
 
-bool suffices(const NearSamples& near, const SamplePose& pose, float margin, float radius,
+bool suffices(const NearSamples& near, float moved, float margin,
               const voxel::DistanceField& field) {
-  const float moved = displacement(near.pose, pose, radius);
   return near.margin >= 0.0F && moved <= 0.5F * field.cell && margin <= field.cell &&
          near.margin >= margin + field.slope * moved + kRounding * field.cell;
 }
 
 }  // namespace
 
+bool is_still_empty(const NearSamples& near, float moved, float margin,
+                    const voxel::DistanceField& field) {
+  return near.packets.empty() && suffices(near, near.moved + moved, margin, field);
+}
+
 void search_field(const voxel::SurfaceModel& samples, const voxel::DistanceField& field,
                   const SamplePose& pose, float margin, double motion, NearSamples& near,
                   SurfaceSearch& search) {
   // Samples lie in the shape's cube.
   const float radius = static_cast<float>(0.8661 * samples.edge);
-  if (suffices(near, pose, margin, radius, field)) {
+  if (near.margin >= 0.0F) near.moved = displacement(near.pose, pose, radius);
+  if (suffices(near, near.moved, margin, field)) {
     search_packets(samples.tree, field, pose, margin, near.packets, search);
     return;
   }
@@ -61,6 +66,7 @@ void search_field(const voxel::SurfaceModel& samples, const voxel::DistanceField
   }
   near.margin = margin + field.slope * allowance + kRounding * field.cell;
   near.pose = pose;
+  near.moved = 0.0F;
   search_field(samples.tree, field, pose, near.margin, search);
   near.packets.clear();
   for (const SurfaceHit& hit : search.hits) {

@@ -16,9 +16,16 @@ struct NearSamples {
   std::vector<std::uint32_t> packets;  ///< of points, ascending
   float margin = -1.0F;                ///< [m]; < 0: nothing is known
   SamplePose pose{};                   ///< of the samples in the field's frame, when it was known
+  float moved = 0.0F;  ///< no sample has moved farther since, until the last search [m]
 
   void forget() { margin = -1.0F; }
 };
+
+/// After a search without hits: can there still be none?
+/// @param moved   no sample has moved farther since that search [m]
+/// @param margin  of the search that may be saved [m]
+bool is_still_empty(const NearSamples& near, float moved, float margin,
+                    const voxel::DistanceField& field);
 
 /// The same hits as search_field, from the packets in `near` while no other can hold one: the
 /// proof is in near_samples.cpp. When they do not suffice, all samples are searched, and `near`

@@ -288,6 +288,21 @@ void emit(const BodyState& bodies, const BodyPair& pair, const ContactCandidate&
   out.friction_W.back() = x_A + R_WA * (c.share_A - (0.5 * c.gap) * c.normal_A);
 }
 
+// Are two shapes still farther apart than the reach, by what the last search knew? The samples of b
+// that count are near body a, so that they move against it no farther than its own surface.
+bool is_still_apart(const NearPair& near, const BodyState& bodies, const BodyPair& pair,
+                    Shapes shapes, double reach) {
+  if (!near.apart) return false;
+  const voxel::DistanceField& field_a = shapes[bodies.shape[pair.body_a]]->surface.field;
+  const voxel::DistanceField& field_b = shapes[bodies.shape[pair.body_b]]->surface.field;
+  const double around = bodies.bounding_radius[pair.body_a] +
+                        4.0 * static_cast<double>(std::max(field_a.cell, field_b.cell)) + reach;
+  const auto moved = static_cast<float>(displacement(near.X_BA, body_pose(bodies, pair), around));
+  const float margin = search_margin(reach);
+  return is_still_empty(near.way[0], moved, margin, field_b) &&
+         is_still_empty(near.way[1], moved, margin, field_a);
+}
+
 // Finds the candidates for contacts at the present poses.
 void find_candidates(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
                      ExactSurfaces smooth, double reach, const PairMotion& motion,
@@ -297,11 +312,19 @@ void find_candidates(const BodyState& bodies, const BodyPair& pair, Shapes shape
     append_face_contacts(bodies, pair, shapes, smooth, reach, motion, scratch);
     return;
   }
+  const double far =
+      bodies.bounding_radius[pair.body_a] + bodies.bounding_radius[pair.body_b] + reach;
+  if ((bodies.x_W[pair.body_a] - bodies.x_W[pair.body_b]).squaredNorm() > far * far) return;
+  if (near != nullptr && is_still_apart(*near, bodies, pair, shapes, reach)) return;
   for (const bool samples_of_b : {false, true}) {
-    NearSamples* one_way = near == nullptr ? nullptr : &(*near)[samples_of_b ? 1 : 0];
+    NearSamples* one_way = near == nullptr ? nullptr : &near->way[samples_of_b ? 1 : 0];
     FieldContacts(bodies, pair, shapes, smooth, samples_of_b)
         .append(reach, motion, one_way, scratch);
   }
+  if (near == nullptr) return;
+  near->apart = std::ranges::all_of(
+      near->way, [](const NearSamples& way) { return way.margin >= 0.0F && way.packets.empty(); });
+  if (near->apart) near->X_BA = body_pose(bodies, pair);
 }
 
 // Keeps few candidates, and measures their gaps.
@@ -322,9 +345,7 @@ void reduce_candidates(const BodyState& bodies, const BodyPair& pair, Shapes sha
 // Anchors the kept candidates at the present poses.
 void anchor_kept(const BodyState& bodies, double reach, const SurfaceScratch& scratch,
                  model::ContactAnchors::Pair& anchor) {
-  const BodyIndex a = anchor.body_a;
-  const BodyIndex b = anchor.body_b;
-  anchor.X_BA = relative_pose({bodies.x_W[b], bodies.q_WB[b]}, {bodies.x_W[a], bodies.q_WB[a]});
+  anchor.X_BA = body_pose(bodies, {anchor.body_a, anchor.body_b});
   anchor.reach = reach;
   const Mat3 R_BA = anchor.X_BA.q.toRotationMatrix();
   for (const std::uint32_t k : scratch.reduction.kept) {

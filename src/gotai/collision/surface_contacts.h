@@ -26,9 +26,18 @@ constexpr model::FeatureKey surface_feature(std::uint32_t direction, std::uint32
   return static_cast<model::FeatureKey>(direction) << 32U | sample;
 }
 
-/// What the last search of a pair leaves for the next: the samples of body a in the field of body
-/// b, and the other way round.
-using NearPair = std::array<NearSamples, 2>;
+/// What the last search of a pair leaves for the next.
+struct NearPair {
+  /// The samples of body a in the field of body b, and the other way round.
+  std::array<NearSamples, 2> way;
+  bool apart = false;  ///< neither had hits
+  Pose X_BA;           ///< of body a against body b then
+
+  void forget() {
+    for (NearSamples& near : way) near.forget();
+    apart = false;
+  }
+};
 
 /// Storage of the search for one pair after another.
 struct SurfaceScratch {
