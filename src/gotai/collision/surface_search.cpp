@@ -49,6 +49,13 @@ GOTAI_INLINE I8 gather(const std::int32_t* values, I8 index) {
   return result;
 }
 
+// Writes first + lane for every lane of a mask; eight values may be written.
+GOTAI_INLINE void store_lanes(unsigned mask, std::uint32_t first, std::uint32_t* to) {
+  for (; mask != 0U; mask &= mask - 1U) {
+    *to++ = first + static_cast<std::uint32_t>(__builtin_ctz(mask));
+  }
+}
+
 // values[index] and values[index + 1] of every lane.
 GOTAI_INLINE void gather_pairs(const std::int16_t* values, I8 index, F8& first, F8& second) {
   for (int i = 0; i < kLanes; ++i) {

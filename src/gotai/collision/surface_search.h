@@ -29,12 +29,20 @@ struct SurfaceHit {
   std::array<float, 3> gradient{};  ///< of the field, in its frame; about unit length
 };
 
+/// Field values and their slopes at eight samples [cells of the field].
+struct alignas(32) SampledPacket {
+  std::array<float, voxel::kLanes> value;
+  std::array<std::array<float, voxel::kLanes>, 3> slope;
+};
+
 /// Storage of a search, and the work it did.
 struct SurfaceSearch {
   std::vector<SurfaceHit> hits;       ///< result, by ascending sample
   std::uint64_t tests = 0;            ///< spheres and samples looked up, summed over searches
-  std::vector<std::uint32_t> packet;  ///< of the height being searched
+  // Room for the packets of the height being searched, of the next, and for looked-up samples.
+  std::vector<std::uint32_t> packet;
   std::vector<std::uint32_t> next;
+  std::vector<SampledPacket> sampled;
 };
 
 /// Instruction set of the kernels.

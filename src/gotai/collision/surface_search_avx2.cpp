@@ -35,6 +35,29 @@ GOTAI_INLINE I8 gather(const std::int32_t* values, I8 index) {
   return (I8)_mm256_i32gather_epi32(values, (__m256i)index, 4);
 }
 
+// The lanes of every mask, one per byte.
+struct LaneTable {
+  std::uint64_t lanes[256] = {};
+
+  constexpr LaneTable() {
+    for (unsigned mask = 0; mask < 256; ++mask) {
+      unsigned at = 0;
+      for (unsigned lane = 0; lane < 8; ++lane) {
+        if ((mask >> lane & 1U) != 0U) lanes[mask] |= std::uint64_t{lane} << (8 * at++);
+      }
+    }
+  }
+};
+constexpr LaneTable kLaneTable;
+
+// Writes first + lane for every lane of a mask; eight values are written.
+GOTAI_INLINE void store_lanes(unsigned mask, std::uint32_t first, std::uint32_t* to) {
+  const __m128i bytes = _mm_cvtsi64_si128(static_cast<long long>(kLaneTable.lanes[mask]));
+  const __m256i lanes = _mm256_cvtepu8_epi32(bytes);
+  const __m256i values = _mm256_add_epi32(lanes, _mm256_set1_epi32(static_cast<int>(first)));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), values);
+}
+
 // values[index] and values[index + 1] of every lane, in one 32-bit gather.
 GOTAI_INLINE void gather_pairs(const std::int16_t* values, I8 index, F8& first, F8& second) {
   const auto* base = reinterpret_cast<const int*>(values);
