@@ -5,23 +5,26 @@
 #include <cmath>
 #include <limits>
 
+#include "gotai/collision/lanes.h"
+
 namespace gotai::collision {
 namespace {
-
-float square(float x) { return x * x; }
 
 class Chooser {
  public:
   Chooser(std::span<ContactCandidate> candidates, const ReductionScale& scale, Reduction& reduction)
-      : candidates_(candidates), scale_(scale), reduction_(reduction) {
+      : candidates_(candidates), scale_(scale), reduction_(reduction), lanes_(reduction.lanes) {
     const std::size_t n = candidates.size();
+    const std::size_t padded = (n + kLanes - 1) / kLanes * kLanes;
     reduction_.kept.clear();
-    reduction_.distance.assign(n, std::numeric_limits<float>::infinity());
-    reduction_.likeness.assign(n, std::numeric_limits<float>::infinity());
-    reduction_.nearest.assign(n, 0);
-    reduction_.reaches.resize(n);
-    reduction_.weight.resize(n);
-    for (std::vector<float>& part : reduction_.wrench) part.resize(n);
+    constexpr float kInfinite = std::numeric_limits<float>::infinity();
+    lanes_.distance.assign(padded, -1.0F);
+    std::fill_n(lanes_.distance.begin(), n, kInfinite);
+    lanes_.likeness.assign(padded, kInfinite);
+    lanes_.nearest.assign(padded, 0);
+    lanes_.reaches.assign(padded, 0.0F);
+    lanes_.weight.assign(padded, 0.0F);
+    for (std::vector<float>& part : lanes_.wrench) part.assign(padded, 0.0F);
     for (std::uint32_t i = 1; i < n; ++i) {
       if (candidates[i].gap < candidates[deepest_].gap) deepest_ = i;
     }
@@ -29,45 +32,22 @@ class Chooser {
       const ContactCandidate& c = candidates[i];
       const Vec3 moment = c.point_A.cross(c.normal_A) / scale.length;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        reduction_.wrench[axis][i] = static_cast<float>(c.normal_A[static_cast<int>(axis)]);
-        reduction_.wrench[3 + axis][i] = static_cast<float>(moment[static_cast<int>(axis)]);
+        lanes_.wrench[axis][i] = static_cast<float>(c.normal_A[static_cast<int>(axis)]);
+        lanes_.wrench[3 + axis][i] = static_cast<float>(moment[static_cast<int>(axis)]);
       }
-      reduction_.reaches[i] = static_cast<float>((c.gap - candidates[deepest_].gap) / scale.reach);
-      reduction_.weight[i] = 1.0F / (1.0F + square(reduction_.reaches[i]));
+      lanes_.reaches[i] = static_cast<float>((c.gap - candidates[deepest_].gap) / scale.reach);
+      lanes_.weight[i] = 1.0F / (1.0F + lanes_.reaches[i] * lanes_.reaches[i]);
     }
   }
 
   void keep(std::uint32_t chosen) {
     const auto position = static_cast<std::uint32_t>(reduction_.kept.size());
     reduction_.kept.push_back(chosen);
-    const auto& wrench = reduction_.wrench;
-    std::array<const float*, 6> w;
-    std::array<float, 6> of_chosen;
-    for (std::size_t k = 0; k < 6; ++k) {
-      w[k] = wrench[k].data();
-      of_chosen[k] = wrench[k][chosen];
-    }
-    const float* reaches = reduction_.reaches.data();
-    const float reaches_of_chosen = reaches[chosen];
-    float* distance = reduction_.distance.data();
-    float* likeness = reduction_.likeness.data();
-    std::uint32_t* nearest = reduction_.nearest.data();
-    const std::size_t n = candidates_.size();
-    for (std::size_t i = 0; i < n; ++i) {
-      const float d = ((square(w[0][i] - of_chosen[0]) + square(w[1][i] - of_chosen[1])) +
-                       (square(w[2][i] - of_chosen[2]) + square(w[3][i] - of_chosen[3]))) +
-                      (square(w[4][i] - of_chosen[4]) + square(w[5][i] - of_chosen[5]));
-      const float alike = d + square(reaches[i] - reaches_of_chosen);
-      distance[i] = d < distance[i] ? d : distance[i];
-      nearest[i] = alike < likeness[i] ? position : nearest[i];
-      likeness[i] = alike < likeness[i] ? alike : likeness[i];
-    }
-    distance[chosen] = -1.0F;
-    likeness[chosen] = -1.0F;
-    nearest[chosen] = position;
+    const auto same = static_cast<float>(scale_.resolution * scale_.resolution);
+    farthest_ = keep_wrench(lanes_, chosen, position, same);
   }
 
-  bool is_kept(std::uint32_t i) const { return reduction_.distance[i] < 0.0F; }
+  bool is_kept(std::uint32_t i) const { return lanes_.distance[i] < 0.0F; }
 
   void keep_remembered(std::span<const model::ContactMemory::Entry> remembered) {
     struct Carrier {
@@ -103,62 +83,53 @@ class Chooser {
   }
 
   void keep_farthest() {
-    const auto same = static_cast<float>(scale_.resolution * scale_.resolution);
-    for (;;) {
-      std::uint32_t farthest = 0;
-      float most_wanted = -1.0F;
-      float largest = 0.0F;
-      for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
-        const float squared = reduction_.distance[i];
-        largest = std::max(largest, squared);
-        if (squared <= same) continue;
-        const float wanted = squared * reduction_.weight[i];
-        if (wanted > most_wanted) {
-          most_wanted = wanted;
-          farthest = i;
-        }
-      }
-      reduction_.error = std::sqrt(static_cast<double>(largest));
-      if (reduction_.kept.size() >= kMaxReduced || most_wanted < 0.0F) return;
-      keep(farthest);
+    while (reduction_.kept.size() < kMaxReduced && farthest_.index != FarthestWrench::kNone) {
+      keep(farthest_.index);
     }
+    reduction_.error = std::sqrt(static_cast<double>(farthest_.squared));
   }
 
   // Areas and their centres go to the nearest kept contacts.
   void share() {
-    const double lever = lever_arm([](const ContactCandidate& c) { return c.point_A; });
+    for (ContactCandidate& c : candidates_) c.share_A = c.point_A;
+    const double lever = lever_arm(candidates_.size(), [](std::size_t i) { return i; });
     std::array<Vec3, kMaxReduced> centre;
     std::array<double, kMaxReduced> area{};
     centre.fill(Vec3::Zero());
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
-      const ContactCandidate& c = candidates_[i];
-      centre[reduction_.nearest[i]] += c.area * c.point_A;
-      area[reduction_.nearest[i]] += c.area;
+      ContactCandidate& c = candidates_[i];
+      centre[lanes_.nearest[i]] += c.area * c.point_A;
+      area[lanes_.nearest[i]] += c.area;
+      c.area = 0.0;
     }
-    for (ContactCandidate& c : candidates_) c.area = 0.0;
     for (std::size_t k = 0; k < reduction_.kept.size(); ++k) {
       ContactCandidate& c = candidates_[reduction_.kept[k]];
       c.share_A = centre[k] / area[k];
       c.area = area[k];
     }
-    restore_lever(lever);
     std::sort(reduction_.kept.begin(), reduction_.kept.end());
+    restore_lever(lever);
   }
 
  private:
-  // Mean distance of the area from its centre, which friction against spinning acts on under even
-  // pressure [m].
-  template <typename Place>
-  double lever_arm(const Place& place) {
+  // Mean distance of the area of some candidates from its centre, which friction against spinning
+  // acts on under even pressure [m].
+  // @param at  (k): index of the k-th of them
+  template <typename At>
+  double lever_arm(std::size_t count, const At& at) {
     double area = 0.0;
     centre_.setZero();
-    for (const ContactCandidate& c : candidates_) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const ContactCandidate& c = candidates_[at(k)];
       area += c.area;
-      centre_ += c.area * place(c);
+      centre_ += c.area * c.share_A;
     }
     centre_ /= area;
     double sum = 0.0;
-    for (const ContactCandidate& c : candidates_) sum += c.area * (place(c) - centre_).norm();
+    for (std::size_t k = 0; k < count; ++k) {
+      const ContactCandidate& c = candidates_[at(k)];
+      sum += c.area * (c.share_A - centre_).norm();
+    }
     return sum / area;
   }
 
@@ -169,11 +140,12 @@ class Chooser {
     constexpr double kMostStretch = 1.5;
     Vec3 normal = Vec3::Zero();
     double area = 0.0;
-    for (const ContactCandidate& c : candidates_) {
-      normal += c.area * c.normal_A;
-      area += c.area;
+    for (const std::uint32_t k : reduction_.kept) {
+      normal += candidates_[k].area * candidates_[k].normal_A;
+      area += candidates_[k].area;
     }
-    const double shares = lever_arm([](const ContactCandidate& c) { return c.share_A; });
+    const double shares =
+        lever_arm(reduction_.kept.size(), [&](std::size_t k) { return reduction_.kept[k]; });
     if (normal.norm() < kFlat * area || !(shares > 0.0)) return;
     const double stretch = std::clamp(lever / shares, 1.0, kMostStretch);
     for (const std::uint32_t k : reduction_.kept) {
@@ -184,6 +156,8 @@ class Chooser {
   std::span<ContactCandidate> candidates_;
   const ReductionScale& scale_;
   Reduction& reduction_;
+  WrenchLanes& lanes_;
+  FarthestWrench farthest_;  // after what was kept last
   std::uint32_t deepest_ = 0;
   Vec3 centre_ = Vec3::Zero();  // of the area that lever_arm() looked at last
 };

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "gotai/collision/wrench_lanes.h"
 #include "gotai/core/types.h"
 #include "gotai/model/contact_memory.h"
 #include "gotai/model/contact_set.h"
@@ -22,7 +23,8 @@ struct ContactCandidate {
   Vec3 normal_A = Vec3::Zero();  ///< unit, from b to a
   double gap = 0.0;              ///< [m]; the point on b is point_A - gap normal_A
   double area = 0.0;             ///< [m^2], > 0
-  Vec3 share_A = Vec3::Zero();   ///< centre of the surface it stands for [m]; friction acts there
+  /// Centre of the surface it stands for [m]; friction acts there.
+  Vec3 share_A = Vec3::Zero();
   model::FeatureKey feature = 0;
   bool near_edge = false;  ///< the field is not smooth there: its distance is rounded
 };
@@ -45,13 +47,7 @@ struct Reduction {
   /// Every unit wrench of a candidate, (normal, arm x normal / length), is nearer than this to one
   /// that is kept: the error of any load is at most this times the sum of its impulses.
   double error = 0.0;
-  // Per candidate, in single precision: plain arrays, which compilers turn into vector loops.
-  std::array<std::vector<float>, 6> wrench;  // normal, moment / length
-  std::vector<float> reaches;                // gap above the deepest / reach
-  std::vector<float> weight;                 // 1 for the deepest, less above it
-  std::vector<float> distance;               // squared, to the nearest kept wrench
-  std::vector<float> likeness;               // squared distance of wrench and gap to `nearest`
-  std::vector<std::uint32_t> nearest;        // position in `kept` of the one most alike
+  WrenchLanes lanes;
 };
 
 /// Chooses at most kMaxReduced candidates: those that carried the largest impulses in the last step

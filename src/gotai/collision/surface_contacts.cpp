@@ -32,6 +32,8 @@ float search_margin(double margin) {
 
 // The deepest contact is taken beside remembered ones only if deeper by this fraction of the size.
 constexpr double kDepthStep = 2e-4;
+// Contacts farther than this are impacts to come, not what bodies rest on [cells].
+constexpr float kFarCells = 2.0F;
 // Interpolated distances are off by less than half the diagonal of a cell [cells].
 constexpr double kFieldError = 0.9;
 
@@ -53,7 +55,8 @@ class FieldContacts {
     if (!exact.empty() && exact[shape] != nullptr) curved_ = &exact[shape]->curved;
   }
 
-  void append(double margin, const PairMotion& motion, NearSamples* near,
+  // @param thin  of samples that are far away, one in each packet is enough
+  void append(double margin, const PairMotion& motion, NearSamples* near, bool thin,
               SurfaceScratch& scratch) const {
     const SamplePose pose = sample_pose(X_QP_, samples_, field_);
     if (near != nullptr) {
@@ -62,6 +65,7 @@ class FieldContacts {
     } else {
       search_field(samples_.tree, field_.field, pose, search_margin(margin), scratch.search);
     }
+    if (thin) leave_out_far_neighbours(scratch.search.hits);
     for (const SurfaceHit& hit : scratch.search.hits) append(hit, motion, scratch.candidates);
   }
 
@@ -129,6 +133,27 @@ class FieldContacts {
     double distance;
     Vec3 gradient_P;
   };
+
+  // Of a packet whose samples are all far from Q, the nearest stands for all: it lies within a few
+  // cells of them, and what comes near is searched again.
+  void leave_out_far_neighbours(std::vector<SurfaceHit>& hits) const {
+    const float far = kFarCells * field_.field.cell;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < hits.size();) {
+      const std::uint32_t packet = hits[i].sample / voxel::kLanes;
+      const std::size_t first = i;
+      std::size_t nearest = i;
+      while (++i < hits.size() && hits[i].sample / voxel::kLanes == packet) {
+        if (hits[i].distance < hits[nearest].distance) nearest = i;
+      }
+      if (hits[nearest].distance > far) {
+        hits[count++] = hits[nearest];
+      } else {
+        for (std::size_t k = first; k < i; ++k) hits[count++] = hits[k];
+      }
+    }
+    hits.resize(count);
+  }
 
   void append(const SurfaceHit& hit, const PairMotion& motion,
               std::vector<ContactCandidate>& out) const {
@@ -305,7 +330,7 @@ bool is_still_apart(const NearPair& near, const BodyState& bodies, const BodyPai
 
 // Finds the candidates for contacts at the present poses.
 void find_candidates(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
-                     ExactSurfaces smooth, double reach, const PairMotion& motion,
+                     ExactSurfaces smooth, double reach, const PairMotion& motion, bool thin,
                      SurfaceScratch& scratch, NearPair* near) {
   scratch.candidates.clear();
   if (bodies.geometry[pair.body_b] != model::Geometry::shape) {
@@ -319,7 +344,7 @@ void find_candidates(const BodyState& bodies, const BodyPair& pair, Shapes shape
   for (const bool samples_of_b : {false, true}) {
     NearSamples* one_way = near == nullptr ? nullptr : &near->way[samples_of_b ? 1 : 0];
     FieldContacts(bodies, pair, shapes, smooth, samples_of_b)
-        .append(reach, motion, one_way, scratch);
+        .append(reach, motion, one_way, thin, scratch);
   }
   if (near == nullptr) return;
   near->apart = std::ranges::all_of(
@@ -374,9 +399,10 @@ void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shap
   }
   // Bodies move on the smooth surfaces that their meshes stand for; outside steps meshes decide.
   const ExactSurfaces smooth = options.dt > 0.0 ? exact : ExactSurfaces{};
-  find_candidates(bodies, pair, shapes, smooth, reach, motion, scratch, near);
-  if (scratch.candidates.empty()) return;
   const bool reduced = options.contacts == model::ContactTreatment::reduced;
+  find_candidates(bodies, pair, shapes, smooth, reach, motion, reduced && options.dt > 0.0, scratch,
+                  near);
+  if (scratch.candidates.empty()) return;
   if (reduced) reduce_candidates(bodies, pair, shapes, exact, options, motion, scratch);
   if (anchor != nullptr) {
     anchor_kept(bodies, reach, scratch, *anchor);

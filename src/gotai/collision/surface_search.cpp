@@ -69,6 +69,8 @@ GOTAI_INLINE void gather_pairs(const std::int16_t* values, I8 index, F8& first, 
 #include "gotai/collision/surface_search_kernel.inc"
 #include "gotai/collision/triangle_search_kernel.inc"
 
+#include "gotai/collision/reduction_kernel.inc"
+
 namespace gotai::collision {
 namespace {
 
@@ -136,6 +138,14 @@ std::uint32_t nearest_triangle(const voxel::TriangleTree& tree, const std::array
   if (use_avx2(kernel)) return nearest_triangle_avx2(tree, point, limit);
 #endif
   return portable::nearest_triangle(tree, point, limit);
+}
+
+FarthestWrench keep_wrench(WrenchLanes& lanes, std::uint32_t chosen, std::uint32_t position,
+                           float same, Kernel kernel) {
+#ifdef __x86_64__
+  if (use_avx2(kernel)) return keep_wrench_avx2(lanes, chosen, position, same);
+#endif
+  return portable::keep_wrench(lanes, chosen, position, same);
 }
 
 }  // namespace gotai::collision

@@ -37,8 +37,8 @@ struct alignas(32) SampledPacket {
 
 /// Storage of a search, and the work it did.
 struct SurfaceSearch {
-  std::vector<SurfaceHit> hits;       ///< result, by ascending sample
-  std::uint64_t tests = 0;            ///< spheres and samples looked up, summed over searches
+  std::vector<SurfaceHit> hits;  ///< result, by ascending sample
+  std::uint64_t tests = 0;       ///< spheres and samples looked up, summed over searches
   // Room for the packets of the height being searched, of the next, and for looked-up samples.
   std::vector<std::uint32_t> packet;
   std::vector<std::uint32_t> next;

@@ -71,6 +71,8 @@ GOTAI_INLINE void gather_pairs(const std::int16_t* values, I8 index, F8& first, 
 #include "gotai/collision/surface_search_kernel.inc"
 #include "gotai/collision/triangle_search_kernel.inc"
 
+#include "gotai/collision/reduction_kernel.inc"
+
 namespace gotai::collision {
 
 void search_field_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
@@ -92,6 +94,11 @@ void search_half_space_avx2(const voxel::SurfaceTree& samples, const std::array<
 std::uint32_t nearest_triangle_avx2(const voxel::TriangleTree& tree,
                                     const std::array<float, 3>& point, float limit) {
   return avx2::nearest_triangle(tree, point, limit);
+}
+
+FarthestWrench keep_wrench_avx2(WrenchLanes& lanes, std::uint32_t chosen, std::uint32_t position,
+                                float same) {
+  return avx2::keep_wrench(lanes, chosen, position, same);
 }
 
 }  // namespace gotai::collision

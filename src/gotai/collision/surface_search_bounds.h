@@ -6,6 +6,7 @@
 #include <array>
 
 #include "gotai/collision/surface_search.h"
+#include "gotai/collision/wrench_lanes.h"
 #include "gotai/voxel/distance_field.h"
 #include "gotai/voxel/triangle_tree.h"
 
@@ -34,5 +35,8 @@ void search_half_space_avx2(const voxel::SurfaceTree& samples, const std::array<
 // Likewise of nearest_triangle.
 std::uint32_t nearest_triangle_avx2(const voxel::TriangleTree& tree,
                                     const std::array<float, 3>& point, float limit);
+// And of keep_wrench.
+FarthestWrench keep_wrench_avx2(WrenchLanes& lanes, std::uint32_t chosen, std::uint32_t position,
+                                float same);
 
 }  // namespace gotai::collision
