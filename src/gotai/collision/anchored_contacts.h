@@ -11,9 +11,9 @@
 namespace gotai::collision {
 
 /// Farthest that a pair may move against the pose in which its contacts were found, until the end
-/// of the step [diameters of the smaller body]. Half of what a deeper sample must be deeper by to
-/// replace one that carried; piles come to rest with ten times as much, too, but deeper.
-inline constexpr double kAnchorTolerance = 1e-4;
+/// of the step [diameters of the smaller body]. As much as a deeper sample must be deeper by to
+/// replace one that carried; piles come to rest with four times as much, too, with more contacts.
+inline constexpr double kAnchorTolerance = 2e-4;
 
 /// Does an anchor still stand for the contacts of its pair up to `reach` [m] in this step? Then no
 /// point that was farther than the anchor's reach has come within this one.
