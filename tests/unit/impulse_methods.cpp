@@ -163,6 +163,16 @@ TEST(Penalty, GoldenRestitutionsWithAndWithoutTension) {
   }
 }
 
+TEST(Methods, PlanAStepOfNoTime) {
+  // The energy before the first step is measured with one.
+  const test::ContactScene scene = ball_on_floor(0.6, 0.1, Vec3::Zero());
+  for (const auto method : {ImpulseMethodName::penalty, ImpulseMethodName::vector_field}) {
+    const auto plan = make_method(test::method_settings(method))->plan(scene.bodies, 0.0);
+    EXPECT_EQ(plan.substeps, 1) << to_string(method);
+    EXPECT_EQ(plan.substep_dt(), 0.0);
+  }
+}
+
 TEST(MakeMethod, RefusesApparentContactsForOtherMethods) {
   const model::Settings settings =
       test::method_settings(ImpulseMethodName::penalty, ContactTreatment::apparent);

@@ -85,6 +85,7 @@ void Springs::solve(const model::BodyState& bodies, const std::vector<double>& g
 int substeps_for_springs(const model::BodyState& bodies, double frequency, double dt) {
   // Semi-implicit Euler is stable up to w h = 2; a tenth of it follows the spring closely.
   constexpr double largest_phase = 0.2;
+  if (dt <= 0.0) return 1;  // the frequency may be that of the step, without bound
   const double phase = dt * frequency * std::sqrt(largest_leverage(bodies));
   return std::max(1, static_cast<int>(std::ceil(phase / largest_phase)));
 }

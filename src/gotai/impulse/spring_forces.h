@@ -87,7 +87,7 @@ class Springs {
 };
 
 /// Sub-steps of a step of dt [s] in which the stiffest spring, at a body's rim, is followed
-/// closely.
+/// closely; one for a step of no time.
 /// @param frequency  on the reduced mass [rad/s]
 int substeps_for_springs(const model::BodyState& bodies, double frequency, double dt);
 
