@@ -51,7 +51,8 @@ Axis make_axis(double low, double high, bool log) {
     axis.low = std::pow(10.0, std::floor(std::log10(low) + 1e-9));
     axis.high = std::pow(10.0, std::ceil(std::log10(high) - 1e-9));
     if (axis.high <= axis.low) axis.high = 10.0 * axis.low;
-    for (double t = axis.low; t <= axis.high * 1.0001; t *= 10.0) axis.ticks.push_back(t);
+    const auto decades = static_cast<int>(std::lround(std::log10(axis.high / axis.low)));
+    for (int k = 0; k <= decades; ++k) axis.ticks.push_back(axis.low * std::pow(10.0, k));
     return axis;
   }
   if (high - low < 1e-12 * std::max(1.0, std::abs(high))) {
@@ -61,8 +62,11 @@ Axis make_axis(double low, double high, bool log) {
   const double step = nice_step(high - low);
   axis.low = step * std::floor(low / step + 1e-9);
   axis.high = step * std::ceil(high / step - 1e-9);
-  for (double t = axis.low; t <= axis.high + 0.5 * step; t += step)
+  const auto steps = static_cast<int>(std::lround((axis.high - axis.low) / step));
+  for (int k = 0; k <= steps; ++k) {
+    const double t = axis.low + step * k;
     axis.ticks.push_back(std::abs(t) < 1e-12 * step ? 0.0 : t);
+  }
   return axis;
 }
 

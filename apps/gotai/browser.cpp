@@ -7,8 +7,6 @@
 
 #include "console.h"
 
-extern char** environ;
-
 namespace gotai::cli {
 
 void open_in_browser(const std::string& target) {

@@ -138,11 +138,13 @@ std::vector<render::Picture> pictures(const Film& film, const std::vector<double
   render::Renderer renderer(film.run, options);
   const view::FrameSource source = film.source();
   std::vector<view::FrameView> moments;
+  moments.reserve(times.size());
   for (const double t : times) moments.push_back(render::moment_at(source, t));
   const render::Extent extent = render::measure(film.run, moments);
   const render::Camera camera =
       render::frame_camera(extent, Vec3(0.35, -1.0, 0.3), static_cast<double>(width) / height, 1.0);
   std::vector<render::Picture> drawn;
+  drawn.reserve(moments.size());
   for (const view::FrameView& moment : moments)
     drawn.push_back(renderer.draw(
         moment, render::body_colours(film.run, moment, render::ColourMode::index, extent.scales),
@@ -170,8 +172,7 @@ Json run(const Json& point, const std::string& folder) {
   totals.write(record);
   record["frames"] = shown.frames.size();
   record["real_time_factor"] = duration / totals.total_s;
-  std::vector<double> times;
-  for (int k = 0; k < 5; ++k) times.push_back(duration * k / 4.0);
+  const std::vector<double> times{0.0, 0.25 * duration, 0.5 * duration, 0.75 * duration, duration};
   record["curves"]["strip"] = base64_of_png(
       render::side_by_side(pictures(shown, times, 230, 170), 4), folder + "/strip.png");
   record["curves"]["start"] =

@@ -268,41 +268,50 @@ TEST(KilledWriter, SpaceThatIsNeverWrittenIsInTheFile) {
   H5Pclose(access);
 }
 
+// Files cannot grow beyond some bytes while it lives.
+class SmallDisk {
+ public:
+  explicit SmallDisk(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    struct rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~SmallDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    signal(SIGXFSZ, old_handler_);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+ private:
+  struct rlimit before_ {};
+  void (*old_handler_)(int) = signal(SIGXFSZ, SIG_IGN);
+};
+
 TEST(FullDisk, TheFirstFlushIsAllOrNothing) {
   test::TemporaryFolder folder;
   const std::string path = folder.file("a.h5");
-  struct rlimit before {};
-  getrlimit(RLIMIT_FSIZE, &before);
-  auto* const old_handler = signal(SIGXFSZ, SIG_IGN);
   {
     Hdf5File file = Hdf5File::create(path);
     file.create_table("/a", Scalar::u64, {}, 1024);
     file.append_rows<std::uint64_t>("/a", std::vector<std::uint64_t>(100000, 1));
-    struct rlimit limit = before;
-    limit.rlim_cur = 1 << 18;
-    setrlimit(RLIMIT_FSIZE, &limit);
+    const SmallDisk disk(1 << 18);
     EXPECT_THROW(file.flush(), FileError);
   }
-  setrlimit(RLIMIT_FSIZE, &before);
-  signal(SIGXFSZ, old_handler);
   EXPECT_EQ(std::filesystem::file_size(path), 0U);
 }
 
 TEST(FullDisk, KeepsWhatWasFlushed) {
   test::TemporaryFolder folder;
   const std::string path = folder.file("a.h5");
-  struct rlimit before {};
-  getrlimit(RLIMIT_FSIZE, &before);
-  auto* const old_handler = signal(SIGXFSZ, SIG_IGN);
   std::uint64_t flushed = 0;
   std::string message;
   {
     Hdf5File file = Hdf5File::create(path);
     file.create_table("/a", Scalar::u64, {}, 1024);
     file.flush();
-    struct rlimit limit = before;
-    limit.rlim_cur = 1 << 20;
-    setrlimit(RLIMIT_FSIZE, &limit);
+    const SmallDisk disk(1 << 20);
     try {
       for (;; ++flushed) {
         file.append_rows("/a", std::vector<std::uint64_t>(5000, flushed));
@@ -312,8 +321,6 @@ TEST(FullDisk, KeepsWhatWasFlushed) {
       message = error.what();
     }
   }
-  setrlimit(RLIMIT_FSIZE, &before);
-  signal(SIGXFSZ, old_handler);
   EXPECT_THAT(message, HasSubstr("File too large"));
   EXPECT_THAT(message, HasSubstr("before the last flush is kept"));
   EXPECT_GT(flushed, 10u);

@@ -12,6 +12,13 @@ constexpr double kRangeCells = 5.0;  // values in bricks are clamped to +-this m
                                      // corners of cells in the band are nearer
 constexpr double kHalfDiagonal = 0.8660254037844387;
 
+// Where node or brick (i, j, k) of n^3 is kept.
+std::size_t offset_of(int n, int i, int j, int k) {
+  const auto side = static_cast<std::size_t>(n);
+  return (static_cast<std::size_t>(k) * side + static_cast<std::size_t>(j)) * side +
+         static_cast<std::size_t>(i);
+}
+
 std::int16_t quantize(double value, double scale) {
   return static_cast<std::int16_t>(std::lround(std::clamp(value / scale, -32767.0, 32767.0)));
 }
@@ -62,7 +69,7 @@ bool sample_brick(const SignedDistance& surface, const Vec3& low, const Distance
         const int i = (k * kBrickNodes + row) % 2 == 0 ? step : kBrickCells - step;
         const double d = sampler.sample(low + cell * Vec3(i, j, k), range);
         nearest = std::min(nearest, std::abs(d));
-        out[(k * kBrickNodes + j) * kBrickNodes + i] = quantize(d, field.scale);
+        out[offset_of(kBrickNodes, i, j, k)] = quantize(d, field.scale);
       }
     }
   }
@@ -92,7 +99,8 @@ void sample_bricks(const SignedDistance& surface, const Vec3& low, DistanceField
   const int n = field.bricks;
   const double cell = field.cell;
   const double brick_edge = kBrickCells * cell;
-  field.brick.assign(static_cast<std::size_t>(n * n * n), kNoBrickOutside);
+  const auto side = static_cast<std::size_t>(n);
+  field.brick.assign(side * side * side, kNoBrickOutside);
   std::vector<std::int16_t> values(kBrickStride, 0);
   std::int32_t count = 0;
   std::uint32_t hint = SignedDistance::kNoTriangle;
@@ -100,7 +108,7 @@ void sample_bricks(const SignedDistance& surface, const Vec3& low, DistanceField
     for (int j = 0; j < n; ++j) {
       for (int i = 0; i < n; ++i) {
         const Vec3 corner = low + brick_edge * Vec3(i, j, k);
-        std::int32_t& brick = field.brick[static_cast<std::size_t>((k * n + j) * n + i)];
+        std::int32_t& brick = field.brick[offset_of(n, i, j, k)];
         const ClosestPoint center = surface.query(corner + Vec3::Constant(0.5 * brick_edge),
                                                   std::numeric_limits<double>::infinity(), hint);
         hint = center.triangle;
@@ -124,8 +132,7 @@ float largest_slope(const DistanceField& field) {
       for (int j = 0; j < kBrickNodes; ++j) {
         for (int i = 0; i < kBrickNodes; ++i) {
           const int index[3] = {i, j, k};
-          const std::int16_t* v =
-              field.values.data() + base + i * kStep[0] + j * kStep[1] + k * kStep[2];
+          const std::int16_t* v = field.values.data() + base + offset_of(kBrickNodes, i, j, k);
           std::int64_t squared = 0;
           for (int axis = 0; axis < 3; ++axis) {
             std::int64_t difference = 0;
@@ -196,15 +203,13 @@ FieldValue evaluate(const DistanceField& field, const Vec3& x) {
   const Vec3 inside = lattice.cwiseMax(0.0).cwiseMin(size * (1.0 - 1e-7));
   const Eigen::Vector3i c = inside.cast<int>();
   const Eigen::Vector3i b = c / kBrickCells;
-  const std::int32_t brick =
-      field.brick[static_cast<std::size_t>((b.z() * field.bricks + b.y()) * field.bricks + b.x())];
+  const std::int32_t brick = field.brick[offset_of(field.bricks, b.x(), b.y(), b.z())];
   FieldValue result;
   bool is_inside = brick == kNoBrickInside;
   if (brick >= 0) {
     const Eigen::Vector3i l = c - kBrickCells * b;
-    const std::int16_t* v = field.values.data() +
-                            static_cast<std::ptrdiff_t>(brick) * kBrickStride +
-                            (l.z() * kBrickNodes + l.y()) * kBrickNodes + l.x();
+    const std::int16_t* v = field.values.data() + static_cast<std::size_t>(brick) * kBrickStride +
+                            offset_of(kBrickNodes, l.x(), l.y(), l.z());
     result = interpolate(v, kBrickNodes, kBrickNodes * kBrickNodes, inside - c.cast<double>(),
                          field.scale, cell);
     result.in_band = std::abs(result.distance) <= field.trusted;
@@ -213,7 +218,7 @@ FieldValue evaluate(const DistanceField& field, const Vec3& x) {
   if (!result.in_band) {
     const int n = field.coarse_nodes();
     const Eigen::Vector3i l = c / kCoarseCells;
-    const std::int16_t* v = field.coarse.data() + (l.z() * n + l.y()) * n + l.x();
+    const std::int16_t* v = field.coarse.data() + offset_of(n, l.x(), l.y(), l.z());
     const Vec3 t = inside / kCoarseCells - l.cast<double>();
     result = interpolate(v, n, n * n, t, field.coarse_scale, kCoarseCells * cell);
     // The sign is known; the coarse value must not come nearer than the bricks reach.

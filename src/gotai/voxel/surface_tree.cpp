@@ -108,6 +108,7 @@ std::size_t SurfaceTree::bytes() const {
 
 SurfaceTree make_surface_tree(const std::vector<SurfaceSample>& samples, const Vec3& center) {
   std::vector<Vec3> positions;
+  positions.reserve(samples.size());
   for (const SurfaceSample& s : samples) positions.push_back(s.position);
   const std::vector<std::uint32_t> order = order_in_runs(positions);
 

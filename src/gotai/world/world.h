@@ -30,6 +30,8 @@ namespace gotai {
 /// Name of a body that stays valid when other bodies are removed. Never reused.
 struct BodyId {
   std::uint32_t value = 0;
+  // clang-tidy takes the zero in a defaulted comparison for a pointer.
+  // NOLINTNEXTLINE(modernize-use-nullptr)
   friend auto operator<=>(const BodyId&, const BodyId&) = default;
 };
 using ShapeId = std::uint32_t;
