@@ -15,7 +15,7 @@
 namespace gotai::cli {
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kCheckFooter = R"(Examples:
   gotai check scene.toml
   gotai check scene.toml --set collision.level=5 --json
 Exit code 0: the scene can be run. Initial overlaps beyond one voxel count as an error (exit code 1)
@@ -64,7 +64,7 @@ std::uint64_t count_kind(const model::BodyState& bodies, model::BodyKind kind) {
   return count;
 }
 
-nlohmann::ordered_json to_json(const OpenedScene& scene, const Findings& findings) {
+nlohmann::ordered_json findings_json(const OpenedScene& scene, const Findings& findings) {
   const model::BodyState& bodies = scene.built.world->bodies();
   nlohmann::ordered_json json = {
       {"scene", scene.description.path},
@@ -158,7 +158,7 @@ int run_check(const SceneOptions& options) {
                                    [](const auto& overlap) { return overlap.is_refused(); });
   if (!refused) measure_trial(*scene.built.world, scene.description.duration, findings);
 
-  print(options.json ? to_json(scene, findings).dump() + "\n" : to_text(scene, findings));
+  print(options.json ? findings_json(scene, findings).dump() + "\n" : to_text(scene, findings));
   if (!refused) return kSuccess;
   print_error(options.path +
               ": bodies overlap by more than one voxel at the start. Move them apart, or accept it "
@@ -172,7 +172,7 @@ void add_check_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<SceneOptions>();
   CLI::App* command = app.add_subcommand(
       "check", "Validate a scene; derived time step, memory, expected time, initial overlaps");
-  command->footer(kFooter);
+  command->footer(kCheckFooter);
   add_scene_options(*command, *options);
   command->callback([options, &action] { action = [options] { return run_check(*options); }; });
 }

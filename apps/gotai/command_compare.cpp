@@ -21,7 +21,7 @@
 namespace gotai::cli {
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kCompareFooter = R"(Examples:
   gotai compare examples/spin.toml
   gotai compare scene.toml -o methods.csv --set world.duration=1 --set collision.level=4
 The scene runs once with every impulse method, everything else as it says. `distance` is the mean
@@ -124,7 +124,7 @@ void measure_distance(const Outcome& reference, Outcome& outcome) {
   outcome.distance = sum / static_cast<double>(outcome.centres.size());
 }
 
-nlohmann::ordered_json to_json(const Outcome& outcome) {
+nlohmann::ordered_json outcome_json(const Outcome& outcome) {
   const RunSummary& s = outcome.summary;
   return {{"method", model::to_string(outcome.variant.method)},
           {"contact_treatment", model::to_string(outcome.variant.contacts)},
@@ -152,7 +152,7 @@ nlohmann::ordered_json to_json(const Outcome& outcome) {
 std::string to_csv(const std::vector<Outcome>& outcomes) {
   std::string text;
   for (const Outcome& outcome : outcomes) {
-    const nlohmann::ordered_json json = to_json(outcome);
+    const nlohmann::ordered_json json = outcome_json(outcome);
     std::string header;
     std::string row;
     for (const auto& [key, value] : json.items()) {
@@ -166,7 +166,7 @@ std::string to_csv(const std::vector<Outcome>& outcomes) {
   return text;
 }
 
-std::string to_table(const std::vector<Outcome>& outcomes) {
+std::string outcomes_table(const std::vector<Outcome>& outcomes) {
   std::string text = fmt::format(
       "{:24} {:>27} {:>15} {:>10} {:>23} {:>10}\n{:24} {:>9} {:>8} {:>8} "
       "{:>8} {:>6} {:>10} {:>11} {:>11} {:>10}\n",
@@ -208,10 +208,10 @@ int compare(const CompareOptions& options) {
   if (options.scene.json) {
     nlohmann::ordered_json json = {{"scene", options.scene.path},
                                    {"methods", nlohmann::ordered_json::array()}};
-    for (const Outcome& outcome : outcomes) json["methods"].push_back(to_json(outcome));
+    for (const Outcome& outcome : outcomes) json["methods"].push_back(outcome_json(outcome));
     print(json.dump() + "\n");
   } else {
-    print(to_table(outcomes));
+    print(outcomes_table(outcomes));
   }
   return kSuccess;
 }
@@ -222,7 +222,7 @@ void add_compare_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command =
       app.add_subcommand("compare", "Run one scene with every impulse method, side by side");
-  command->footer(kFooter);
+  command->footer(kCompareFooter);
   add_scene_options(*command, options->scene);
   command->add_option("-o,--output", options->output, "Also write the table as CSV")
       ->type_name("FILE.csv");

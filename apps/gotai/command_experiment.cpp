@@ -11,7 +11,7 @@
 namespace gotai::cli {
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kExperimentFooter = R"(Examples:
   gotai experiment list                    what there is
   gotai experiment fall                    Figs. 4-4 to 4-6: numbers, plots, report
   gotai experiment fall --json             the same numbers for programs
@@ -105,7 +105,7 @@ void add_experiment_command(CLI::App& app, Action& action) {
   command->add_option("--threads", options->threads, "points at once, where no time is measured")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->footer(kFooter);
+  command->footer(kExperimentFooter);
   command->callback([options, &action] {
     action = [options] {
       return options->name == "list" ? list_experiments() : run_experiments(*options);

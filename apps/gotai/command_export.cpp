@@ -13,7 +13,7 @@
 namespace gotai::cli {
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kExportFooter = R"(Examples:
   gotai export run.h5 -o run.glb      animated glTF: Blender, three.js, Windows 3D Viewer
   gotai export run.h5 -o run.csv      time,body,px,py,pz,qw,qx,qy,qz of the meshes' own frames
   gotai export run.h5 -o run.pvd      ParaView: one file per frame, with velocities and contacts
@@ -49,7 +49,7 @@ void add_export_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* command =
       app.add_subcommand("export", "Turn a recording into animated glTF, CSV or ParaView files");
-  command->footer(kFooter);
+  command->footer(kExportFooter);
   command->add_option("RUN.h5", options->recording, "Recording")->required();
   command->add_option("-o,--output", options->output, "File to write")
       ->type_name("OUT.glb|csv|pvd")

@@ -14,7 +14,7 @@
 namespace gotai::cli {
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kInfoFooter = R"(Examples:
   gotai info part.stl                 elements, extents, volume, defects
   gotai info part.gotai-shape         mass properties and voxels per level
   gotai info run.h5 --json            bodies, frames, the run's figures
@@ -64,7 +64,7 @@ void add_info_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command =
       app.add_subcommand("info", "Say what is in a mesh, a prepared shape or a recording");
-  command->footer(kFooter);
+  command->footer(kInfoFooter);
   command->add_option("FILE", options->path, "Mesh, shape file or recording")->required();
   command->add_flag("--json", options->json, "Print one JSON object on standard output");
   command->callback([options, &action] { action = [options] { return show_info(*options); }; });

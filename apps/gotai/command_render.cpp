@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kRenderFooter = R"(Examples:
   gotai render run.h5 -o last.png                          the end of the run
   gotai render run.h5 -o start.png --time 0.5 --size 1920x1080 --samples 4
   gotai render run.h5 -o strip.png --strip 5 --end 2       five moments of the first 2 s side by side
@@ -120,6 +120,7 @@ class Studio {
     const auto [begin, end] =
         command.is_single_picture() ? std::pair(moment, moment) : span(command);
     std::vector<view::FrameView> shown;
+    shown.reserve(kMoments);
     for (int k = 0; k < (begin < end ? kMoments : 1); ++k)
       shown.push_back(
           render::moment_at(recorded_.frames, begin + (end - begin) * k / (kMoments - 1)));
@@ -143,6 +144,7 @@ void draw_picture(Studio& studio, const RenderCommand& command) {
   }
   const auto [first, last] = studio.span(command);
   std::vector<render::Picture> parts;
+  parts.reserve(static_cast<std::size_t>(command.strip));
   for (int k = 0; k < command.strip; ++k)
     parts.push_back(studio.draw(first + (last - first) * k / std::max(1, command.strip - 1)));
   render::write_png(command.output, render::side_by_side(parts, studio.options().width / 64));
@@ -225,7 +227,7 @@ int render_recording(const RenderCommand& command) {
 void add_render_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<RenderCommand>();
   CLI::App* command = app.add_subcommand("render", "Draw pictures or a film of a recording");
-  command->footer(kFooter);
+  command->footer(kRenderFooter);
   command->add_option("recording", options->input, "Recording to draw")
       ->type_name("RUN.h5")
       ->required();

@@ -26,7 +26,7 @@
 namespace gotai::cli {
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kRunFooter = R"(Examples:
   gotai run scene.toml -o run.h5
   gotai run scene.toml -o run.h5 --set impulse.method=penalty --set world.duration=2
   gotai run scene.toml --json --threads 1          only the figures, nothing is recorded
@@ -185,7 +185,7 @@ int run_scene(const RunOptions& options) {
 void add_run_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Simulate a scene and record it");
-  command->footer(kFooter);
+  command->footer(kRunFooter);
   add_scene_options(*command, options->scene);
   command
       ->add_option("-o,--output", options->output,

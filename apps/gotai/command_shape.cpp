@@ -17,7 +17,7 @@
 namespace gotai::cli {
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kShapeFooter = R"(Examples:
   gotai shape part.stl -o part.gotai-shape --unit mm
   gotai shape spot.obj -o spot.gotai-shape --up y --size 0.3 --level 8
   gotai shape --generate rock --seed 7 -o rock.gotai-shape
@@ -66,7 +66,7 @@ void add_shape_command(CLI::App& app, Action& action) {
   options->shape.prepared_level = voxel::ShapeOptions{}.prepared_level;
   scene::ShapeDescription& shape = options->shape;
   CLI::App* command = app.add_subcommand("shape", "Prepare a shape from a mesh and show it");
-  command->footer(kFooter);
+  command->footer(kShapeFooter);
   CLI::Option_group* source = command->add_option_group("source");
   source->add_option("MESH", shape.mesh_path, "Mesh file, recognised by its content");
   source->add_option("--generate", shape.generator.shape, "A generated shape instead of a file")

@@ -17,7 +17,7 @@
 namespace gotai::cli {
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kViewFooter = R"(Examples:
   gotai view run.h5 --open                     writes run.html here and opens it in the browser
   gotai view run.h5 -o run.html --max-mb 10    a smaller page: fewer frames and contacts
 The page is one file that holds the run and the viewer. It needs no network and no server: send it
@@ -67,7 +67,7 @@ int view_recording(ViewOptions options) {
 void add_view_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<ViewOptions>();
   CLI::App* command = app.add_subcommand("view", "Make a page to watch a recording in a browser");
-  command->footer(kFooter);
+  command->footer(kViewFooter);
   command->add_option("recording", options->input, "Recording to show")
       ->type_name("RUN.h5")
       ->required();

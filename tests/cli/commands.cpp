@@ -23,13 +23,6 @@ f 1 4 3
 f 2 3 4
 )";
 
-std::string read_file(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 TEST(Check, PrintsWhatARunWillCost) {
   const TemporaryFolder folder;
   const std::string scene = write_text(folder, "scene.toml", kTwoCubes);

@@ -11,16 +11,12 @@
 #include <stdexcept>
 
 namespace gotai::test {
-namespace {
-
 std::string read_file(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
 }
-
-}  // namespace
 
 std::string write_text(const TemporaryFolder& folder, const std::string& name,
                        const std::string& text) {

@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -25,6 +26,9 @@ struct Outcome {
 /// Writes a text file into a folder and returns its path.
 std::string write_text(const TemporaryFolder& folder, const std::string& name,
                        const std::string& text);
+
+/// The bytes of a file.
+std::string read_file(const std::filesystem::path& path);
 
 /// `gotai` with these arguments, running in the background; its output goes to files.
 class Program {

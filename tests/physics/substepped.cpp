@@ -200,9 +200,10 @@ TEST(Substepped, APileOnItsSurfacesHasTheSameBitsForAnyThreadsAndInstructionSet)
     world.add_plane({});
     const ShapeId id = world.add_shape(shape);
     for (int k = 0; k < 300; ++k) {
+      const int layer = k / 100;
       BodyDescription body;
       body.shape = id;
-      body.X_WM.p = 2.3 * Vec3(k % 10, (k / 10) % 10, 0.5 + k / 100);
+      body.X_WM.p = 2.3 * Vec3(k % 10, (k / 10) % 10, 0.5 + layer);
       body.angular_velocity = Vec3(0.1 * (k % 7), 0.2, 0.3 * (k % 3));
       world.add_body(body);
     }

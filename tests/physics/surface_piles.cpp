@@ -12,19 +12,19 @@
 namespace gotai {
 namespace {
 
-constexpr int kLevel = 6;
+constexpr int kPileLevel = 6;
 
-std::shared_ptr<const voxel::Shape> shape_of(const std::string& name) {
+std::shared_ptr<const voxel::Shape> pile_shape(const std::string& name) {
   return std::make_shared<const voxel::Shape>(
       voxel::make_shape(name, geometry::generate({.shape = name}),
-                        {.prepared_level = kLevel, .surface_level = kLevel}));
+                        {.prepared_level = kPileLevel, .surface_level = kPileLevel}));
 }
 
 World world_with(const Vec3& gravity) {
   model::Settings settings;
   settings.gravity = gravity;
   settings.collision.model = model::CollisionModel::surface;
-  settings.collision.level = kLevel;
+  settings.collision.level = kPileLevel;
   settings.impulse.contacts = model::ContactTreatment::reduced;
   settings.time.step = 1.0 / 60.0;
   World world(settings);
@@ -41,14 +41,14 @@ class DeepOverlap : public testing::TestWithParam<const char*> {};
 // energy there is comes from parting; the pile's energy is what lifting it by its own height takes.
 TEST_P(DeepOverlap, PartsWithoutABang) {
   World world = world_with(Vec3::Zero());
-  const auto shape = shape_of(GetParam());
+  const auto shape = pile_shape(GetParam());
   const ShapeId id = world.add_shape(shape);
   const Box3 box = geometry::bounding_box(shape->mesh);
   const double size = box.sizes().maxCoeff();
   for (int k = 0; k < 8; ++k) {
     BodyDescription body;
     body.shape = id;
-    body.X_WM.p = 0.9 * Vec3(k % 2, (k / 2) % 2, k / 4).cwiseProduct(box.sizes());
+    body.X_WM.p = 0.9 * Vec3(k & 1, (k >> 1) & 1, k >> 2).cwiseProduct(box.sizes());
     world.add_body(body);
   }
   double mass = 0.0;
@@ -96,7 +96,7 @@ TEST(Chain, TenLinksHangForHalfAMinute) {
   constexpr double kRing = 0.5 / 1.3;
   constexpr double kTube = 0.3 * kRing;
   World world = world_with(Vec3(0, 0, -9.81));
-  const ShapeId id = world.add_shape(shape_of("torus"));
+  const ShapeId id = world.add_shape(pile_shape("torus"));
   for (int k = 0; k < kLinks; ++k) {
     BodyDescription link;
     link.shape = id;

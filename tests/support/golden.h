@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "gotai/core/types.h"
+
 namespace gotai::test {
 
 /// Folder with the optional reference data; may not exist.
@@ -22,6 +24,11 @@ inline nlohmann::json golden(const std::string& name) {
   std::ifstream in(data_dir() / "golden" / name);
   if (!in) throw std::runtime_error("missing golden file " + name);
   return nlohmann::json::parse(in);
+}
+
+/// A vector, as golden files write it.
+inline Vec3 vec(const nlohmann::json& a) {
+  return {a[0].get<double>(), a[1].get<double>(), a[2].get<double>()};
 }
 
 /// SHA-256 of a text as lower-case hexadecimal digits.

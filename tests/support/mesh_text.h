@@ -8,7 +8,9 @@
 #include <cstring>
 #include <string>
 
-#include "gotai/geometry/mesh.h"
+#include "gotai/core/error.h"
+#include "gotai/geometry/generate.h"
+#include "gotai/geometry/load_mesh.h"
 
 namespace gotai::test {
 
@@ -18,6 +20,16 @@ inline std::string obj_text(const geometry::Mesh& mesh) {
   for (const geometry::Triangle& t : mesh.triangles)
     text += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
   return text;
+}
+
+/// The surface of a generated shape; some have no subdivisions.
+inline geometry::Mesh generated_surface(const std::string& shape, int subdivisions = 0) {
+  geometry::GeneratorOptions options;
+  options.shape = shape;
+  options.subdivisions = subdivisions;
+  geometry::Mesh mesh = geometry::generate(options);
+  mesh.tetrahedra.clear();
+  return mesh;
 }
 
 /// The bytes of a value, as they lie in memory.
@@ -47,6 +59,17 @@ inline std::string binary_stl(const geometry::Mesh& mesh) {
     bytes.append(2, '\0');
   }
   return bytes;
+}
+
+/// The message of the error that these bytes give; empty when they load.
+inline std::string error_of(const std::string& name, const std::string& bytes,
+                            const geometry::LoadOptions& options = {}) {
+  try {
+    geometry::read_mesh(name, bytes, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
 }
 
 }  // namespace gotai::test

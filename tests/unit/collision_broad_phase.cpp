@@ -14,7 +14,7 @@ using model::BodyIndex;
 using model::BodyState;
 using model::Geometry;
 
-struct Scene {
+struct Spheres {
   BodyState bodies;
   std::vector<double> radius;
 
@@ -33,7 +33,7 @@ struct Scene {
 };
 
 /// The definition, pair by pair.
-std::vector<BodyPair> brute_force(const Scene& scene, double margin) {
+std::vector<BodyPair> brute_force(const Spheres& scene, double margin) {
   std::vector<BodyPair> pairs;
   const BodyState& b = scene.bodies;
   for (BodyIndex i = 0; i < b.size(); ++i) {
@@ -49,7 +49,7 @@ std::vector<BodyPair> brute_force(const Scene& scene, double margin) {
   return pairs;
 }
 
-std::vector<BodyPair> find_pairs(const Scene& scene, double margin) {
+std::vector<BodyPair> find_pairs(const Spheres& scene, double margin) {
   BroadPhase broad_phase;
   std::vector<BodyPair> pairs;
   broad_phase.find_pairs(scene.bodies, scene.radius, margin, pairs);
@@ -57,7 +57,7 @@ std::vector<BodyPair> find_pairs(const Scene& scene, double margin) {
 }
 
 TEST(BroadPhase, EmptyWorldAndOneBodyHaveNoPairs) {
-  Scene scene;
+  Spheres scene;
   EXPECT_TRUE(find_pairs(scene, 0.0).empty());
   scene.add(Vec3(1, 2, 3), 0.5);
   EXPECT_TRUE(find_pairs(scene, 1.0).empty());
@@ -67,7 +67,7 @@ class RandomScenes : public ::testing::TestWithParam<int> {};
 
 TEST_P(RandomScenes, EqualBruteForce) {
   Random random(static_cast<std::uint64_t>(GetParam()));
-  Scene scene;
+  Spheres scene;
   // Equal sizes, mild mixes and mixes over several orders of magnitude; flat, long and cubic
   // worlds; far from the origin.
   const double spread = std::array{0.0, 0.5, 3.0}[static_cast<std::size_t>(GetParam()) % 3];
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenes, ::testing::Range(1, 40));
 
 TEST(BroadPhase, OneGiantAmongManySmallBodies) {
   Random random(7);
-  Scene scene;
+  Spheres scene;
   for (int i = 0; i < 300; ++i) {
     scene.add(Vec3(random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5)), 0.2);
   }
@@ -101,7 +101,7 @@ TEST(BroadPhase, OneGiantAmongManySmallBodies) {
 
 TEST(BroadPhase, ABodyThatHasFlownAwayIsNoTrouble) {
   Random random(8);
-  Scene scene;
+  Spheres scene;
   for (int i = 0; i < 200; ++i) {
     scene.add(Vec3(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)), 0.4);
   }
@@ -111,7 +111,7 @@ TEST(BroadPhase, ABodyThatHasFlownAwayIsNoTrouble) {
 }
 
 TEST(BroadPhase, SpheresThatTouchExactlyAreAPair) {
-  Scene scene;
+  Spheres scene;
   scene.add(Vec3(0, 0, 0), 0.5);
   scene.add(Vec3(1, 0, 0), 0.5);
   scene.add(Vec3(0, 1.0000001, 0), 0.5);
@@ -119,7 +119,7 @@ TEST(BroadPhase, SpheresThatTouchExactlyAreAPair) {
 }
 
 TEST(BroadPhase, TheOnlyDynamicBodyIsBodyA) {
-  Scene scene;
+  Spheres scene;
   scene.add(Vec3(0, 0, 0), 0.5, false);
   scene.add(Vec3(0, 0, 0), 0.5, true);
   scene.add(Vec3(0, 0, 0), 0.5, true);
@@ -129,7 +129,7 @@ TEST(BroadPhase, TheOnlyDynamicBodyIsBodyA) {
 }
 
 TEST(BroadPhase, PlanesMeetTheDynamicBodiesThatReachThem) {
-  Scene scene;
+  Spheres scene;
   scene.add_boundary(Geometry::plane, {}, Vec3::Zero());
   scene.add(Vec3(100, 0, 0.4), 0.5);
   scene.add(Vec3(0, 0, 0.6), 0.5);
@@ -140,7 +140,7 @@ TEST(BroadPhase, PlanesMeetTheDynamicBodiesThatReachThem) {
 }
 
 TEST(BroadPhase, ATiltedPlane) {
-  Scene scene;
+  Spheres scene;
   const Pose tilt{Vec3(1, 0, 0), Quat(Eigen::AngleAxisd(1.0, Vec3::UnitY()))};
   scene.add_boundary(Geometry::plane, tilt, Vec3::Zero());
   const Vec3 normal = tilt.q * Vec3::UnitZ();
@@ -150,7 +150,7 @@ TEST(BroadPhase, ATiltedPlane) {
 }
 
 TEST(BroadPhase, ContainersMeetWhatReachesFloorOrWalls) {
-  Scene scene;
+  Spheres scene;
   scene.add_boundary(Geometry::container, {}, Vec3(2, 3, 4));
   scene.add(Vec3(0, 0, 2.0), 0.5);     // in the middle
   scene.add(Vec3(0, 0, 0.4), 0.5);     // on the floor
@@ -165,7 +165,7 @@ TEST(BroadPhase, StorageIsReusedWithoutTraces) {
   std::vector<BodyPair> pairs;
   for (int seed = 0; seed < 6; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
-    Scene scene;
+    Spheres scene;
     const int count = seed % 2 == 0 ? 400 : 30;
     for (int i = 0; i < count; ++i) {
       scene.add(random.uniform(0.0, 4.0) * random.unit_vector(), random.uniform(0.01, 0.5));

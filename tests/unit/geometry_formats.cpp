@@ -18,15 +18,6 @@ using test::swapped_bytes;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-std::string error_of(const std::string& name, const std::string& bytes) {
-  try {
-    read_mesh(name, bytes);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
 /// The unit tetrahedron at the origin, or the unit cube: closed, outward.
 void expect_solid(const LoadedMesh& loaded, double volume, const std::string& format) {
   SCOPED_TRACE(loaded.report.format);
@@ -79,18 +70,21 @@ TEST(Ply, BinaryOfBothByteOrders) {
 
 TEST(Ply, Errors) {
   const std::string head = "ply\nformat ascii 1.0\n";
-  EXPECT_THAT(error_of("a.ply", head), HasSubstr("end_header"));
-  EXPECT_THAT(error_of("a.ply", head + "element vertex 4000000000\nproperty float x\nend_header\n"),
-              HasSubstr("cannot hold so many"));
-  EXPECT_THAT(error_of("a.ply", head + "element vertex 2\nproperty float x\nproperty float y\n"
-                                       "property float z\nend_header\n0 0 0\n0 0\n"),
-              AllOf(HasSubstr("a.ply:9"), HasSubstr("fewer numbers")));
-  EXPECT_THAT(error_of("a.ply", head + "element vertex 1\nproperty half x\n"),
+  EXPECT_THAT(test::error_of("a.ply", head), HasSubstr("end_header"));
+  EXPECT_THAT(
+      test::error_of("a.ply", head + "element vertex 4000000000\nproperty float x\nend_header\n"),
+      HasSubstr("cannot hold so many"));
+  EXPECT_THAT(
+      test::error_of("a.ply", head + "element vertex 2\nproperty float x\nproperty float y\n"
+                                     "property float z\nend_header\n0 0 0\n0 0\n"),
+      AllOf(HasSubstr("a.ply:9"), HasSubstr("fewer numbers")));
+  EXPECT_THAT(test::error_of("a.ply", head + "element vertex 1\nproperty half x\n"),
               HasSubstr("unknown type"));
-  EXPECT_THAT(error_of("a.ply", head + "element face 1\nproperty list uchar int vertex_index\n"
-                                       "end_header\n3 0 -1 2\n"),
-              HasSubstr("index -1"));
-  EXPECT_THAT(error_of("a.ply", "ply\nformat utf8 1.0\n"), HasSubstr("binary_big_endian"));
+  EXPECT_THAT(
+      test::error_of("a.ply", head + "element face 1\nproperty list uchar int vertex_index\n"
+                                     "end_header\n3 0 -1 2\n"),
+      HasSubstr("index -1"));
+  EXPECT_THAT(test::error_of("a.ply", "ply\nformat utf8 1.0\n"), HasSubstr("binary_big_endian"));
 }
 
 TEST(Off, WithCommentsColoursAndPrefix) {
@@ -103,9 +97,9 @@ TEST(Off, WithCommentsColoursAndPrefix) {
                              faces),
                kTet, "OFF");
   expect_solid(read_mesh("headless.off", std::string("4 4 6\n") + kPoints + faces), kTet, "OFF");
-  EXPECT_THAT(error_of("a.off", "OFF BINARY\n1 2 3"), HasSubstr("binary OFF"));
-  EXPECT_THAT(error_of("a.off", "4OFF\n1 2 3"), HasSubstr("dimensions"));
-  EXPECT_THAT(error_of("a.off", "OFF\n-3 2 3"), HasSubstr("negative"));
+  EXPECT_THAT(test::error_of("a.off", "OFF BINARY\n1 2 3"), HasSubstr("binary OFF"));
+  EXPECT_THAT(test::error_of("a.off", "4OFF\n1 2 3"), HasSubstr("dimensions"));
+  EXPECT_THAT(test::error_of("a.off", "OFF\n-3 2 3"), HasSubstr("negative"));
 }
 
 TEST(Medit, TetrahedraWithSectionsItDoesNotNeed) {
@@ -114,12 +108,13 @@ TEST(Medit, TetrahedraWithSectionsItDoesNotNeed) {
       "0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\nRequiredVertices\n2\n1\n2\n"
       "Tetrahedra\n1\n1 2 3 4 7\nEnd\nnothing counts here\n";
   expect_solid(read_mesh("t.mesh", text), kTet, "MEDIT");
-  EXPECT_THAT(error_of("a.mesh", "MeshVersionFormatted 1\nDimension 2\n"),
+  EXPECT_THAT(test::error_of("a.mesh", "MeshVersionFormatted 1\nDimension 2\n"),
               HasSubstr("dimension 2"));
-  EXPECT_THAT(error_of("a.mesh", "MeshVersionFormatted 1\nTetrahedra 1\n0 1 2 3 0\n"),
+  EXPECT_THAT(test::error_of("a.mesh", "MeshVersionFormatted 1\nTetrahedra 1\n0 1 2 3 0\n"),
               AllOf(HasSubstr("a.mesh:3"), HasSubstr("counts from 1")));
   EXPECT_THAT(
-      error_of("a.mesh", "MeshVersionFormatted 1\nVertices 1 0 0 0 1\nTetrahedra 1\n1 1 1 99 0\n"),
+      test::error_of("a.mesh",
+                     "MeshVersionFormatted 1\nVertices 1 0 0 0 1\nTetrahedra 1\n1 1 1 99 0\n"),
       AllOf(HasSubstr("a.mesh:4"), HasSubstr("vertex 98")));
 }
 
@@ -184,13 +179,13 @@ TEST(Vtk, BinaryVersion5Grid) {
 }
 
 TEST(Vtk, Errors) {
-  EXPECT_THAT(error_of("a.vtk", std::string(kVtkHead) + "ASCII\nDATASET STRUCTURED_POINTS\n"),
+  EXPECT_THAT(test::error_of("a.vtk", std::string(kVtkHead) + "ASCII\nDATASET STRUCTURED_POINTS\n"),
               HasSubstr("only UNSTRUCTURED_GRID and POLYDATA"));
-  EXPECT_THAT(
-      error_of("a.vtk", std::string(kVtkHead) + "ASCII\nDATASET POLYDATA\nPOLYGONS 1 4\n9 0 1 2\n"),
-      HasSubstr("a cell of 9 points"));
-  EXPECT_THAT(error_of("a.vtk", std::string(kVtkHead) +
-                                    "ASCII\nDATASET UNSTRUCTURED_GRID\nCELL_TYPES 1\n5\n"),
+  EXPECT_THAT(test::error_of("a.vtk", std::string(kVtkHead) +
+                                          "ASCII\nDATASET POLYDATA\nPOLYGONS 1 4\n9 0 1 2\n"),
+              HasSubstr("a cell of 9 points"));
+  EXPECT_THAT(test::error_of("a.vtk", std::string(kVtkHead) +
+                                          "ASCII\nDATASET UNSTRUCTURED_GRID\nCELL_TYPES 1\n5\n"),
               HasSubstr("0 cells but 1 cell types"));
 }
 
@@ -236,11 +231,12 @@ TEST(Detection, ByContentWhateverTheExtension) {
   expect_solid(read_mesh("cube.xyz", obj), 1.0, "OBJ");
   expect_solid(read_mesh("cube.obj", test::binary_stl(generate({.shape = "cube"}))), 1.0,
                "STL (binary)");
-  EXPECT_THAT(error_of("a.stl", "PK\x03\x04 and so on"), HasSubstr("zip"));
-  EXPECT_THAT(error_of("a.obj", "<?xml version='1.0'?>"), HasSubstr("XML"));
-  EXPECT_THAT(error_of("a.mesh", "MFEM mesh v1.0\n"), HasSubstr("MFEM"));
-  EXPECT_THAT(error_of("a.step", "ISO-10303-21;\n"), HasSubstr("STEP"));
-  EXPECT_THAT(error_of("letter.txt", "Dear reader,\n"), HasSubstr("no mesh of a known format"));
+  EXPECT_THAT(test::error_of("a.stl", "PK\x03\x04 and so on"), HasSubstr("zip"));
+  EXPECT_THAT(test::error_of("a.obj", "<?xml version='1.0'?>"), HasSubstr("XML"));
+  EXPECT_THAT(test::error_of("a.mesh", "MFEM mesh v1.0\n"), HasSubstr("MFEM"));
+  EXPECT_THAT(test::error_of("a.step", "ISO-10303-21;\n"), HasSubstr("STEP"));
+  EXPECT_THAT(test::error_of("letter.txt", "Dear reader,\n"),
+              HasSubstr("no mesh of a known format"));
 }
 
 }  // namespace

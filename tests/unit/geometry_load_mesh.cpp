@@ -16,16 +16,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-std::string error_of(const std::string& name, const std::string& bytes,
-                     const LoadOptions& options = {}) {
-  try {
-    read_mesh(name, bytes, options);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
 constexpr const char* kTetrahedronObj =
     "# a comment\n"
     "v .5 0 0\nv +1.5 0 0\nv .5 1. 0\nv .5 0 1e0 0.1 nan 0.3\n"
@@ -43,17 +33,18 @@ TEST(LoadMesh, ObjInAllItsNotations) {
 }
 
 TEST(LoadMesh, ObjErrorsNameTheLine) {
-  EXPECT_THAT(error_of("a.obj", "v 0 0 0\nf 0 1 2\n"),
+  EXPECT_THAT(test::error_of("a.obj", "v 0 0 0\nf 0 1 2\n"),
               AllOf(HasSubstr("a.obj:2"), HasSubstr("counts from 1")));
-  EXPECT_THAT(error_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 9\n"),
+  EXPECT_THAT(test::error_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 9\n"),
               AllOf(HasSubstr("a.obj:5"), HasSubstr("vertex 8")));
-  EXPECT_THAT(error_of("a.obj", "v 0 0 x\n"), AllOf(HasSubstr("a.obj:1"), HasSubstr("'x'")));
-  EXPECT_THAT(error_of("a.obj", "v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n"),
+  EXPECT_THAT(test::error_of("a.obj", "v 0 0 x\n"), AllOf(HasSubstr("a.obj:1"), HasSubstr("'x'")));
+  EXPECT_THAT(test::error_of("a.obj", "v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n"),
               AllOf(HasSubstr("a.obj:2"), HasSubstr("finite")));
-  EXPECT_THAT(error_of("a.obj", "v 0 0 0\nv 1 1e999 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("finite"));
-  EXPECT_THAT(error_of("a.obj", "v 0 0 0\nf 1 1\n"), HasSubstr("three vertices"));
-  EXPECT_THAT(error_of("a.obj", "v 0 0 0\n"), HasSubstr("no faces"));
-  EXPECT_THAT(error_of("a.obj", ""), HasSubstr("empty"));
+  EXPECT_THAT(test::error_of("a.obj", "v 0 0 0\nv 1 1e999 0\nv 0 1 0\nf 1 2 3\n"),
+              HasSubstr("finite"));
+  EXPECT_THAT(test::error_of("a.obj", "v 0 0 0\nf 1 1\n"), HasSubstr("three vertices"));
+  EXPECT_THAT(test::error_of("a.obj", "v 0 0 0\n"), HasSubstr("no faces"));
+  EXPECT_THAT(test::error_of("a.obj", ""), HasSubstr("empty"));
 }
 
 TEST(LoadMesh, FilesThatCannotBeRead) {
@@ -73,9 +64,9 @@ TEST(LoadMesh, UnitUpAndScale) {
   EXPECT_EQ(sizes({.up = "x"}), Vec3(2, 3, 1));
   for (const char* up : {"x", "y", "z"})  // rotations, not reflections
     EXPECT_NEAR(read_mesh("box.obj", text, {.up = up}).report.volume, 6.0, 1e-14);
-  EXPECT_THAT(error_of("a.obj", text, {.unit = "furlong"}), HasSubstr("um, mm, cm"));
-  EXPECT_THAT(error_of("a.obj", text, {.up = "w"}), HasSubstr("x, y or z"));
-  EXPECT_THAT(error_of("a.obj", text, {.scale = 0.0}), HasSubstr("scale"));
+  EXPECT_THAT(test::error_of("a.obj", text, {.unit = "furlong"}), HasSubstr("um, mm, cm"));
+  EXPECT_THAT(test::error_of("a.obj", text, {.up = "w"}), HasSubstr("x, y or z"));
+  EXPECT_THAT(test::error_of("a.obj", text, {.scale = 0.0}), HasSubstr("scale"));
 }
 
 TEST(LoadMesh, TheAxisGivenAsUpPointsUp) {
@@ -98,7 +89,8 @@ TEST(LoadMesh, BinaryStlThatStartsWithSolid) {
 TEST(LoadMesh, StlOfTheWrongSize) {
   std::string bytes = test::binary_stl(generate({.shape = "cube"}));
   bytes.resize(bytes.size() - 60);
-  EXPECT_THAT(error_of("cut.stl", bytes), AllOf(HasSubstr("facets is 12"), HasSubstr("truncated")));
+  EXPECT_THAT(test::error_of("cut.stl", bytes),
+              AllOf(HasSubstr("facets is 12"), HasSubstr("truncated")));
 }
 
 TEST(LoadMesh, AsciiStl) {
@@ -115,10 +107,10 @@ TEST(LoadMesh, AsciiStl) {
   EXPECT_EQ(loaded.report.format, "STL (ascii)");
   EXPECT_EQ(loaded.mesh.vertices.size(), 8U);
   EXPECT_NEAR(loaded.report.volume, 1.0, 1e-15);
-  EXPECT_THAT(error_of("cube.stl", text + "vertex 1 2"), HasSubstr("ends where"));
-  EXPECT_THAT(error_of("cube.stl", text + "facet normal 0 0 0\nvertex 1 2 3\n"),
+  EXPECT_THAT(test::error_of("cube.stl", text + "vertex 1 2"), HasSubstr("ends where"));
+  EXPECT_THAT(test::error_of("cube.stl", text + "facet normal 0 0 0\nvertex 1 2 3\n"),
               HasSubstr("within a facet"));
-  EXPECT_THAT(error_of("cube.stl", "solid x\nfoo\n"), HasSubstr("cube.stl:2"));
+  EXPECT_THAT(test::error_of("cube.stl", "solid x\nfoo\n"), HasSubstr("cube.stl:2"));
 }
 
 constexpr const char* kGmsh2 =
@@ -150,14 +142,14 @@ TEST(LoadMesh, GmshOfEveryVersion) {
 
 TEST(LoadMesh, GmshErrorsNameTheLine) {
   std::string text = kGmsh2;
-  EXPECT_THAT(error_of("a.msh", text.substr(0, text.find("$EndElements"))),
+  EXPECT_THAT(test::error_of("a.msh", text.substr(0, text.find("$EndElements"))),
               HasSubstr("does not end with $EndElements"));
-  EXPECT_THAT(error_of("a.msh", std::string(kGmsh2).replace(text.find("20 30 40"), 2, "77")),
+  EXPECT_THAT(test::error_of("a.msh", std::string(kGmsh2).replace(text.find("20 30 40"), 2, "77")),
               AllOf(HasSubstr("a.msh:18"), HasSubstr("node 77")));
   EXPECT_THAT(
-      error_of("a.msh", std::string(kGmsh2).replace(text.find("\n4\n") + 1, 1, "900000000")),
+      test::error_of("a.msh", std::string(kGmsh2).replace(text.find("\n4\n") + 1, 1, "900000000")),
       HasSubstr("cannot hold so many"));
-  EXPECT_THAT(error_of("a.msh", std::string(kGmsh2).replace(text.find("2.2"), 3, "7.7")),
+  EXPECT_THAT(test::error_of("a.msh", std::string(kGmsh2).replace(text.find("2.2"), 3, "7.7")),
               HasSubstr("version"));
 }
 

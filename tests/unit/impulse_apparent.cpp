@@ -11,10 +11,6 @@
 namespace gotai::impulse {
 namespace {
 
-Vec3 vec(const nlohmann::json& a) {
-  return {a[0].get<double>(), a[1].get<double>(), a[2].get<double>()};
-}
-
 model::Settings apparent_settings() {
   return test::method_settings(model::ImpulseMethodName::constraint,
                                model::ContactTreatment::apparent);
@@ -29,15 +25,15 @@ struct GoldenScene {
   explicit GoldenScene(const nlohmann::json& golden) {
     Mat3 inertia;
     for (int i = 0; i < 3; ++i) {
-      inertia.row(i) = vec(golden["inertia"][static_cast<std::size_t>(i)]).transpose();
+      inertia.row(i) = test::vec(golden["inertia"][static_cast<std::size_t>(i)]).transpose();
     }
     const auto n = static_cast<Eigen::Index>(golden["r"].size());
     Eigen::MatrixXd J(n, 6);
     Eigen::VectorXd v(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      const Vec3 normal = vec(golden["n"][at]);
-      J.row(i) << normal.transpose(), vec(golden["r"][at]).cross(normal).transpose();
+      const Vec3 normal = test::vec(golden["n"][at]);
+      J.row(i) << normal.transpose(), test::vec(golden["r"][at]).cross(normal).transpose();
       v[i] = golden["v"][at].get<double>();
     }
     const Eigen::VectorXd twist = J.completeOrthogonalDecomposition().solve(v);
@@ -47,7 +43,7 @@ struct GoldenScene {
     scene.add_body(0.0, Mat3::Identity(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero());
     scene.begin_pair(0, 1);
     for (std::size_t i = 0; i < golden["r"].size(); ++i) {
-      scene.add_contact(vec(golden["r"][i]), vec(golden["n"][i]));
+      scene.add_contact(test::vec(golden["r"][i]), test::vec(golden["n"][i]));
     }
   }
 };
@@ -61,8 +57,8 @@ TEST(Apparent, GoldenPointsNormalsAndImpulses) {
     std::vector<Vec3> normals;
     std::vector<double> approach;
     for (std::size_t i = 0; i < golden["r"].size(); ++i) {
-      points.push_back(vec(golden["r"][i]));
-      normals.push_back(vec(golden["n"][i]));
+      points.push_back(test::vec(golden["r"][i]));
+      normals.push_back(test::vec(golden["n"][i]));
       approach.push_back(golden["v"][i]);
     }
     const ApparentContact apparent = apparent_contact(points, normals, approach);
@@ -73,11 +69,11 @@ TEST(Apparent, GoldenPointsNormalsAndImpulses) {
       }
       continue;
     }
-    EXPECT_LE((apparent.point - vec(expected["r_a"])).norm(), 1e-12);
+    EXPECT_LE((apparent.point - test::vec(expected["r_a"])).norm(), 1e-12);
     EXPECT_NEAR(apparent.weight_sum, expected["sum_w"].get<double>(), 1e-12);
     EXPECT_NEAR(apparent.weighted_normal, expected["norm_sum_wn"].get<double>(), 1e-12);
     if (expected.contains("n_a") && !expected["n_a"].is_null()) {
-      EXPECT_LE((apparent.normal - vec(expected["n_a"])).norm(), 1e-12);
+      EXPECT_LE((apparent.normal - test::vec(expected["n_a"])).norm(), 1e-12);
     }
     if (!expected.contains("p_a")) continue;
 

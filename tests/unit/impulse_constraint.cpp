@@ -13,13 +13,9 @@ namespace {
 
 using model::SolverName;
 
-Vec3 vec(const nlohmann::json& a) {
-  return {a[0].get<double>(), a[1].get<double>(), a[2].get<double>()};
-}
-
 Mat3 mat(const nlohmann::json& a) {
   Mat3 m;
-  for (int i = 0; i < 3; ++i) m.row(i) = vec(a[static_cast<std::size_t>(i)]).transpose();
+  for (int i = 0; i < 3; ++i) m.row(i) = test::vec(a[static_cast<std::size_t>(i)]).transpose();
   return m;
 }
 
@@ -50,15 +46,16 @@ TEST_P(Constraint, EccentricImpactsOfTwoBodies) {
     test::ContactScene scene;
     scene.surface(c["e"], 0.0);
     for (std::size_t k = 0; k < 2; ++k) {
-      scene.add_body(c["m"][k], mat(c["I"][k]), -vec(c["r"][k]), vec(c["v"][k]), vec(c["w"][k]));
+      scene.add_body(c["m"][k], mat(c["I"][k]), -test::vec(c["r"][k]), test::vec(c["v"][k]),
+                     test::vec(c["w"][k]));
     }
     scene.begin_pair(0, 1);
-    scene.add_contact(Vec3::Zero(), vec(c["n"]));
+    scene.add_contact(Vec3::Zero(), test::vec(c["n"]));
     const double energy = scene.kinetic_energy();
     scene.strike(*method(), 1e-3);
     for (model::BodyIndex k = 0; k < 2; ++k) {
-      EXPECT_LE((scene.bodies.v_W[k] - vec(c["v_after"][k])).norm(), tolerance());
-      EXPECT_LE((scene.bodies.w_W[k] - vec(c["w_after"][k])).norm(), tolerance());
+      EXPECT_LE((scene.bodies.v_W[k] - test::vec(c["v_after"][k])).norm(), tolerance());
+      EXPECT_LE((scene.bodies.w_W[k] - test::vec(c["w_after"][k])).norm(), tolerance());
     }
     EXPECT_NEAR(scene.update.contact_impulse[0].norm(), c["impulse"].get<double>(), tolerance());
     EXPECT_NEAR(scene.kinetic_energy() - energy, c["dE"].get<double>(), 10 * tolerance());
@@ -214,7 +211,7 @@ TEST_P(Constraint, SlidingSphereBeginsToRollAtFiveSeventhsOfItsSpeed) {
   test::ContactScene scene;
   scene.surface(0.0, mu);
   const auto ball = scene.add_body(1.0, Mat3::Identity() * (0.4 * R * R), Vec3(0, 0, R),
-                                   vec(in["v0"]), Vec3::Zero());
+                                   test::vec(in["v0"]), Vec3::Zero());
   const auto floor =
       scene.add_body(0.0, Mat3::Identity(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero());
   scene.begin_pair(ball, floor);

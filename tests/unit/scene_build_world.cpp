@@ -27,7 +27,7 @@ BuiltScene build(const std::string& text, const BuildOptions& options = {}) {
   return build_world(parse_scene(text, "scene.toml"), options);
 }
 
-std::string message(const std::string& text) {
+std::string build_message(const std::string& text) {
   try {
     build(text);
   } catch (const Error& error) {
@@ -127,10 +127,10 @@ TEST(BuildWorld, SaysWhatItMadeOfAnImperfectMesh) {
 }
 
 TEST(BuildWorld, ErrorsNameThePlaceInTheScene) {
-  EXPECT_THAT(message("[shapes.a]\nmesh = \"no-such-file.obj\"\n[[bodies]]\nshape = \"a\"\n"),
+  EXPECT_THAT(build_message("[shapes.a]\nmesh = \"no-such-file.obj\"\n[[bodies]]\nshape = \"a\"\n"),
               HasSubstr("no-such-file.obj"));
   EXPECT_THAT(
-      message("[shapes.a]\ngenerate = \"torus\"\nthickness = 2\n[[bodies]]\nshape = \"a\"\n"),
+      build_message("[shapes.a]\ngenerate = \"torus\"\nthickness = 2\n[[bodies]]\nshape = \"a\"\n"),
       StartsWith("scene.toml:1:9: "));
 }
 
@@ -138,8 +138,9 @@ TEST(InitialOverlap, IsListedAndRefusedBeyondOneVoxel) {
   const std::string text = kCube +
                            "[[bodies]]\nname = \"a\"\nshape = \"cube\"\n"
                            "[[bodies]]\nname = \"b\"\nshape = \"cube\"\nposition = [0.4, 0, 0]\n";
-  EXPECT_THAT(message(text), AllOf(HasSubstr("a and b: "), HasSubstr("m deep, a voxel is 0.25 m"),
-                                   HasSubstr("allow_initial_overlap = true")));
+  EXPECT_THAT(build_message(text),
+              AllOf(HasSubstr("a and b: "), HasSubstr("m deep, a voxel is 0.25 m"),
+                    HasSubstr("allow_initial_overlap = true")));
   BuildOptions check;
   check.refuse_overlaps = false;
   const BuiltScene checked = build(text, check);
@@ -191,8 +192,8 @@ TEST(Pour, TheSeedDecides) {
 }
 
 TEST(Pour, ARegionThatIsTooSmallSaysHowManyItHolds) {
-  EXPECT_THAT(message(kCube + "[[pour]]\nshape = \"cube\"\ncount = 100\n"
-                              "region = { min = [0, 0, 0], max = [2, 2, 2] }\n"),
+  EXPECT_THAT(build_message(kCube + "[[pour]]\nshape = \"cube\"\ncount = 100\n"
+                                    "region = { min = [0, 0, 0], max = [2, 2, 2] }\n"),
               AllOf(StartsWith("scene.toml:6:1: "), HasSubstr("of 100 bodies without overlap"),
                     HasSubstr("enlarge the region")));
 }

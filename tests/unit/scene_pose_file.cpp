@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-std::string message(const std::string& text) {
+std::string pose_message(const std::string& text) {
   try {
     parse_poses(text, "poses.csv");
   } catch (const FileError& error) {
@@ -33,14 +33,16 @@ TEST(PoseFile, ReadsCommentsHeaderAndPoses) {
 
 TEST(PoseFile, MistakesNameLineAndColumn) {
   const std::string header = "px,py,pz,qw,qx,qy,qz\n";
-  EXPECT_THAT(message("1,2,3,1,0,0,0\n"), StartsWith("poses.csv:1:1: the first line must name"));
-  EXPECT_THAT(message(header + "1,2,3,1,0,0\n"), HasSubstr("needs the 7 numbers"));
-  EXPECT_THAT(message(header + "1,2,3,1,0,0,0,0\n"), StartsWith("poses.csv:2:13: a pose needs"));
-  EXPECT_THAT(message(header + "1,2,x,1,0,0,0\n"),
+  EXPECT_THAT(pose_message("1,2,3,1,0,0,0\n"),
+              StartsWith("poses.csv:1:1: the first line must name"));
+  EXPECT_THAT(pose_message(header + "1,2,3,1,0,0\n"), HasSubstr("needs the 7 numbers"));
+  EXPECT_THAT(pose_message(header + "1,2,3,1,0,0,0,0\n"),
+              StartsWith("poses.csv:2:13: a pose needs"));
+  EXPECT_THAT(pose_message(header + "1,2,x,1,0,0,0\n"),
               StartsWith("poses.csv:2:5: \"x\" is not a finite number"));
-  EXPECT_THAT(message(header + "1,2,inf,1,0,0,0\n"), HasSubstr("not a finite number"));
-  EXPECT_THAT(message(header + "1,2,3,0,0,0,0\n"), HasSubstr("must have length 1"));
-  EXPECT_THAT(message(header), HasSubstr("holds no poses"));
+  EXPECT_THAT(pose_message(header + "1,2,inf,1,0,0,0\n"), HasSubstr("not a finite number"));
+  EXPECT_THAT(pose_message(header + "1,2,3,0,0,0,0\n"), HasSubstr("must have length 1"));
+  EXPECT_THAT(pose_message(header), HasSubstr("holds no poses"));
   EXPECT_THROW(load_poses("no/such/file.csv"), FileError);
 }
 

@@ -10,6 +10,7 @@
 #include "gotai/geometry/generate.h"
 #include "gotai/voxel/inside.h"
 #include "gotai/voxel/inside_soup.h"
+#include "support/mesh_text.h"
 
 namespace gotai::voxel {
 namespace {
@@ -209,13 +210,6 @@ TEST(Shape, RefusesWhatIsNoBody) {
   EXPECT_THROW(make_shape("empty", Mesh(), {}), InvalidArgument);
 }
 
-Mesh generated(const std::string& shape, int subdivisions) {
-  GeneratorOptions options;
-  options.shape = shape;
-  options.subdivisions = subdivisions;
-  return without_tetrahedra(geometry::generate(options));
-}
-
 /// The triangles whose centre is below a height.
 Mesh below(const Mesh& mesh, double height) {
   Mesh result;
@@ -228,7 +222,7 @@ Mesh below(const Mesh& mesh, double height) {
 }
 
 TEST(ImperfectShape, MassComesFromTheVoxelsWithItsError) {
-  const Mesh rock = generated("rock", 4);
+  const Mesh rock = test::generated_surface("rock", 4);
   const Shape exact = make_shape("rock", rock, {});
   EXPECT_EQ(exact.volume_error, 0.0);
   EXPECT_TRUE(exact.warnings.empty());
@@ -261,7 +255,7 @@ TEST(ImperfectShape, VoxelMassOfABoxIsExact) {
 }
 
 TEST(ImperfectShape, DistanceFieldHasTheSignOfTheSolid) {
-  Mesh damaged = generated("sphere", 12);
+  Mesh damaged = test::generated_surface("sphere", 12);
   for (std::size_t t = 0; t < damaged.triangles.size(); t += 7)
     std::swap(damaged.triangles[t][0], damaged.triangles[t][1]);
   std::erase_if(damaged.triangles,
@@ -307,8 +301,8 @@ TEST(ImperfectShape, InsideOutIsTurned) {
 }
 
 TEST(ImperfectShape, OpenSurfacesAreRefusedUnlessTheyGetAThickness) {
-  const Mesh ball = generated("sphere", 16);
-  const Mesh bucket = below(generated("cylinder", 16), 0.49);
+  const Mesh ball = test::generated_surface("sphere", 16);
+  const Mesh bucket = below(test::generated_surface("cylinder", 16), 0.49);
   Mesh sheet;
   sheet.vertices = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)};
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}};

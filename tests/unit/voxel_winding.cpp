@@ -14,6 +14,7 @@
 #include "gotai/voxel/inside_soup.h"
 #include "gotai/voxel/orient_soup.h"
 #include "support/golden.h"
+#include "support/mesh_text.h"
 
 namespace gotai::voxel {
 namespace {
@@ -21,19 +22,10 @@ namespace {
 using geometry::Mesh;
 using geometry::Triangle;
 
-Mesh generated(const std::string& shape, int subdivisions = 0) {
-  geometry::GeneratorOptions options;
-  options.shape = shape;
-  options.subdivisions = subdivisions;
-  Mesh mesh = geometry::generate(options);
-  mesh.tetrahedra.clear();
-  return mesh;
-}
-
 TEST(WindingTree, IsExactForClosedSurfacesAndFastIsNearExact) {
   Random random(3);
   for (const char* shape : {"rock", "torus", "hexapod"}) {
-    const Mesh mesh = generated(shape, shape == std::string("rock") ? 5 : 0);
+    const Mesh mesh = test::generated_surface(shape, shape == std::string("rock") ? 5 : 0);
     const WindingTree tree(mesh);
     for (int i = 0; i < 300; ++i) {
       const Vec3 x(random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5));
@@ -57,7 +49,7 @@ TEST(WindingTree, HalvesAcrossASheet) {
 }
 
 TEST(WindingTree, CountsWhatARayMeets) {
-  const WindingTree tree(generated("torus"));
+  const WindingTree tree(test::generated_surface("torus"));
   EXPECT_EQ(tree.count_hits(Vec3(-3.0, 0.013, 0.007), Vec3(1, 0, 0), 0xffffffff), 4);
   EXPECT_EQ(tree.count_hits(Vec3(0.0, 0.013, 0.007), Vec3(1, 0, 0), 0xffffffff), 2);
   EXPECT_EQ(tree.count_hits(Vec3(0.0, 0.013, 0.007), Vec3(0, 0, 1), 0xffffffff), 0);
@@ -116,8 +108,8 @@ VoxelSet robust_voxels(const Mesh& mesh, const VoxelGrid& grid, int level) {
 
 /// The meshes that damage is tried on: generated ones, and those of the assets that are there.
 std::vector<std::pair<std::string, Mesh>> clean_meshes() {
-  std::vector<std::pair<std::string, Mesh>> meshes{{"rock", generated("rock", 4)},
-                                                   {"torus", generated("torus", 8)}};
+  std::vector<std::pair<std::string, Mesh>> meshes{{"rock", test::generated_surface("rock", 4)},
+                                                   {"torus", test::generated_surface("torus", 8)}};
   for (const char* file :
        {"bunny.off", "spot.obj", "3holes.off", "cheburashka.off", "screw.stl", "fandisk.obj"}) {
     const auto path = test::shared_dir() / "assets" / "meshes" / file;
@@ -152,7 +144,7 @@ TEST(Soup, DamagedMeshesKeepTheirVoxels) {
 }
 
 TEST(Soup, BlocksFarFromTheSurfaceAreDecidedLikeTheirVoxels) {
-  const Mesh mesh = damage(generated("rock", 4), {.removed = 0.05, .holes = 8}, 3);
+  const Mesh mesh = damage(test::generated_surface("rock", 4), {.removed = 0.05, .holes = 8}, 3);
   const VoxelGrid grid = grid_around(geometry::bounding_box(mesh));
   const WindingTree tree(mesh);
   const VoxelSet voxels = voxels_by_winding(tree, grid, 6);
@@ -165,7 +157,8 @@ TEST(Soup, BlocksFarFromTheSurfaceAreDecidedLikeTheirVoxels) {
 }
 
 TEST(Soup, OrientationIsTheSameForEveryNumberOfThreads) {
-  const Mesh mesh = damage(generated("torus", 8), {.removed = 0.2, .flipped = 0.3}, 4);
+  const Mesh mesh =
+      damage(test::generated_surface("torus", 8), {.removed = 0.2, .flipped = 0.3}, 4);
   const auto oriented = [&](int threads) {
     const ThreadLimit limit(threads);
     return orient_soup(mesh).mesh.triangles;
@@ -175,7 +168,7 @@ TEST(Soup, OrientationIsTheSameForEveryNumberOfThreads) {
 
 TEST(Soup, EnclosureTellsSolidsFromSheets) {
   const auto measure = [](const Mesh& mesh) { return enclosure(mesh, WindingTree(mesh)); };
-  const Mesh ball = generated("sphere", 12);
+  const Mesh ball = test::generated_surface("sphere", 12);
   EXPECT_GT(measure(ball), 0.97);
   Mesh half = ball;
   std::erase_if(half.triangles, [&](const Triangle& t) {

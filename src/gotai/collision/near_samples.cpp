@@ -16,9 +16,9 @@
 namespace gotai::collision {
 namespace {
 
-constexpr float kAllowance = 0.25F;    // motion that a list is made for [cells]
-constexpr float kShortestLife = 4.0F;  // searches that a list must serve to be worth making
-constexpr float kRounding = 2e-3F;     // of single-precision positions and values [cells]
+constexpr float kAllowance = 0.25F;      // motion that a list is made for [cells]
+constexpr float kShortestLife = 4.0F;    // searches that a list must serve to be worth making
+constexpr float kFloatRounding = 2e-3F;  // of single-precision positions and values [cells]
 
 // No point nearer to the samples' origin than `radius` has moved farther between two poses.
 float displacement(const SamplePose& from, const SamplePose& to, float radius) {
@@ -38,7 +38,7 @@ float displacement(const SamplePose& from, const SamplePose& to, float radius) {
 bool suffices(const NearSamples& near, float moved, float margin,
               const voxel::DistanceField& field) {
   return near.margin >= 0.0F && moved <= 0.5F * field.cell && margin <= field.cell &&
-         near.margin >= margin + field.slope * moved + kRounding * field.cell;
+         near.margin >= margin + field.slope * moved + kFloatRounding * field.cell;
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ void search_field(const voxel::SurfaceModel& samples, const voxel::DistanceField
     search_field(samples.tree, field, pose, margin, search);
     return;
   }
-  near.margin = margin + field.slope * allowance + kRounding * field.cell;
+  near.margin = margin + field.slope * allowance + kFloatRounding * field.cell;
   near.pose = pose;
   near.moved = 0.0F;
   search_field(samples.tree, field, pose, near.margin, search);

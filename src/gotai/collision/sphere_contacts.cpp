@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "gotai/collision/face.h"
 #include "gotai/collision/relative_pose.h"
 
 namespace gotai::collision {
@@ -61,13 +62,6 @@ void append_shape_contacts(const BodyState& bodies, const BodyPair& pair,
   }
 }
 
-/// A face that bodies rest on, in the frame of its body U: height of a point c_U above it is
-/// normal . c_U + offset.
-struct Face {
-  Vec3 normal;
-  double offset;
-};
-
 /// Descends one pyramid to level k; keeps the voxels for which reaches(center, r, h) holds.
 template <typename Reaches>
 void descend_one(const SphereTree& tree, int level, SphereScratch& scratch, TestCounts& tests,
@@ -96,10 +90,10 @@ void descend_one(const SphereTree& tree, int level, SphereScratch& scratch, Test
 }
 
 /// Shape a against a body with faces, u.
-class FaceContacts {
+class SpheresAboveFaces {
  public:
-  FaceContacts(const BodyState& bodies, const BodyPair& pair, const SphereTree& tree, int level,
-               double margin)
+  SpheresAboveFaces(const BodyState& bodies, const BodyPair& pair, const SphereTree& tree,
+                    int level, double margin)
       : bodies_(bodies), pair_(pair), tree_(tree), level_(level), margin_(margin) {
     X_WA_ = bodies.mesh_pose(pair.body_a);
     X_UA_ = relative_pose({bodies.x_W[pair.body_b], bodies.q_WB[pair.body_b]}, X_WA_);
@@ -150,15 +144,15 @@ class FaceContacts {
   Mat3 R_UA_;
 };
 
-void append_plane_contacts(const FaceContacts& contacts, SphereScratch& scratch,
+void append_plane_contacts(const SpheresAboveFaces& contacts, SphereScratch& scratch,
                            model::ContactSet& out, TestCounts& tests) {
   contacts.append(
-      {Vec3::UnitZ(), 0.0}, 0, scratch, out, tests, [](const Vec3&, double) { return true; },
+      floor_face(), 0, scratch, out, tests, [](const Vec3&, double) { return true; },
       [](const Vec3&) { return true; });
 }
 
 void append_container_contacts(const BodyState& bodies, const BodyPair& pair,
-                               const FaceContacts& contacts, SphereScratch& scratch,
+                               const SpheresAboveFaces& contacts, SphereScratch& scratch,
                                model::ContactSet& out, TestCounts& tests) {
   const Vec3 half = bodies.half_extent[pair.body_b];
   const auto above_floor_area = [&half](const Vec3& p_U) {
@@ -170,11 +164,8 @@ void append_container_contacts(const BodyState& bodies, const BodyPair& pair,
     return body_inside || above_floor_area(contacts.center_U(center));
   };
   contacts.append(
-      {Vec3::UnitZ(), 0.0}, 0, scratch, out, tests, [](const Vec3&, double) { return true; }, acts);
-  const std::array<Face, 4> walls{{{Vec3::UnitX(), half.x()},
-                                   {-Vec3::UnitX(), half.x()},
-                                   {Vec3::UnitY(), half.y()},
-                                   {-Vec3::UnitY(), half.y()}}};
+      floor_face(), 0, scratch, out, tests, [](const Vec3&, double) { return true; }, acts);
+  const std::array<Face, 4> walls = container_walls(half);
   for (std::uint32_t w = 0; w < walls.size(); ++w) {
     contacts.append(
         walls[w], w + 1, scratch, out, tests,
@@ -196,7 +187,7 @@ void append_sphere_contacts(const BodyState& bodies, const BodyPair& pair,
   }
   const auto begin = static_cast<std::uint32_t>(out.size());
   out.pairs.push_back({pair.body_a, pair.body_b, begin, begin});
-  const FaceContacts contacts(bodies, pair, trees[bodies.shape[pair.body_a]], level, margin);
+  const SpheresAboveFaces contacts(bodies, pair, trees[bodies.shape[pair.body_a]], level, margin);
   if (bodies.geometry[pair.body_b] == model::Geometry::plane) {
     append_plane_contacts(contacts, scratch, out, tests);
   } else {

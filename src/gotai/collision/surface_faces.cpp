@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "gotai/collision/face.h"
 #include "gotai/collision/relative_pose.h"
 #include "gotai/collision/surface_sample.h"
 
@@ -13,17 +14,11 @@ using model::BodyIndex;
 using model::BodyState;
 using Shapes = std::span<const std::shared_ptr<const voxel::Shape>>;
 
-// A half space that bodies rest on, in the frame of its body U: height is normal . p_U + offset.
-struct Face {
-  Vec3 normal;
-  double offset;
-};
-
 // Samples of body a above the faces of body b.
-class FaceContacts {
+class SamplesAboveFaces {
  public:
-  FaceContacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
-               const CurvedSamples* curved)
+  SamplesAboveFaces(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
+                    const CurvedSamples* curved)
       : bodies_(bodies),
         a_(pair.body_a),
         b_(pair.body_b),
@@ -34,7 +29,7 @@ class FaceContacts {
         curved_(curved) {}
 
   void append_plane(double margin, const PairMotion& motion, SurfaceScratch& scratch) const {
-    append({Vec3::UnitZ(), 0.0}, 0, margin, motion, scratch, [](const Vec3&) { return true; });
+    append(floor_face(), 0, margin, motion, scratch, [](const Vec3&) { return true; });
   }
 
   // Faces of the open-top box: they act below its rim, and only on bodies whose centre is inside or
@@ -47,11 +42,8 @@ class FaceContacts {
     const bool body_inside =
         above_floor_area(bodies_.q_WB[b_].conjugate() * (bodies_.x_W[a_] - bodies_.x_W[b_]));
     const auto acts = [&](const Vec3& p_U) { return body_inside || above_floor_area(p_U); };
-    append({Vec3::UnitZ(), 0.0}, 0, margin, motion, scratch, acts);
-    const std::array<Face, 4> walls{{{Vec3::UnitX(), half.x()},
-                                     {-Vec3::UnitX(), half.x()},
-                                     {Vec3::UnitY(), half.y()},
-                                     {-Vec3::UnitY(), half.y()}}};
+    append(floor_face(), 0, margin, motion, scratch, acts);
+    const std::array<Face, 4> walls = container_walls(half);
     for (std::uint32_t w = 0; w < walls.size(); ++w) {
       append(walls[w], w + 1, margin, motion, scratch,
              [&](const Vec3& p_U) { return p_U.z() <= half.z() && acts(p_U); });
@@ -106,7 +98,8 @@ void append_face_contacts(const BodyState& bodies, const BodyPair& pair, Shapes 
                           ExactSurfaces exact, double margin, const PairMotion& motion,
                           SurfaceScratch& scratch) {
   const ExactSurface* surface = exact.empty() ? nullptr : exact[bodies.shape[pair.body_a]].get();
-  const FaceContacts faces(bodies, pair, shapes, surface == nullptr ? nullptr : &surface->curved);
+  const SamplesAboveFaces faces(bodies, pair, shapes,
+                                surface == nullptr ? nullptr : &surface->curved);
   if (bodies.geometry[pair.body_b] == model::Geometry::plane) {
     faces.append_plane(margin, motion, scratch);
   } else {

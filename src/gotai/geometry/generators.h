@@ -8,6 +8,9 @@
 
 namespace gotai::geometry::detail {
 
+/// The i-th of n + 1 equidistant points in [-1, 1]; symmetric to the last bit.
+inline double tick(int i, int n) { return static_cast<double>(2 * i - n) / n; }
+
 /// Box of the given edges, cells^3 hexahedra of six tetrahedra.
 Mesh make_box(const Vec3& extents, int cells);
 /// Ball of diameter 1: a cube of cells^3 hexahedra, each point p moved to p |p|_inf / |p|_2.

@@ -14,8 +14,6 @@ void append_quadrilateral(const std::array<std::uint32_t, 4>& corners,
   triangles.push_back({corners[0], corners[3], corners[2]});
 }
 
-double tick(int i, int n) { return static_cast<double>(2 * i - n) / n; }
-
 }  // namespace
 
 Mesh2 make_square(int cells) {

@@ -32,9 +32,6 @@ std::vector<Tetrahedron> lattice(int nx, int ny, int nz, bool periodic_z = false
   return tetrahedra;
 }
 
-/// The i-th of n + 1 equidistant points in [-1, 1]; symmetric to the last bit.
-double tick(int i, int n) { return static_cast<double>(2 * i - n) / n; }
-
 /// Moves a point of the square or cube [-1, 1]^n to the disc or ball of radius 1, along its ray.
 template <typename Vector>
 Vector to_round(const Vector& p) {

@@ -13,7 +13,7 @@ constexpr int patience = 8;  // iterations without a better residual
 constexpr int most_restarts = 2;
 constexpr double restart_distance = 1e-3;  // from the boundary, of the first start's
 constexpr double near_distance = 1e-2;     // the same when starting near a given point
-constexpr double good_enough = 1e-7;       // residual / velocity scale: polishing does the rest
+constexpr double worth_polishing = 1e-7;   // residual / velocity scale: polishing does the rest
 constexpr double towards_boundary = 0.9;   // of the longest step; more after a long step
 constexpr double towards_boundary_fast = 0.99;
 constexpr double long_step = 0.7;
@@ -198,7 +198,7 @@ void InteriorPointSolver::solve(const ConeProblem& problem, const ConeSolution* 
                                 ConeSolution& solution) {
   start(problem);
   if (near != nullptr) start_near(problem, near_distance, *near);
-  const double enough = std::max(limit, good_enough * velocity_scale(problem));
+  const double enough = std::max(limit, worth_polishing * velocity_scale(problem));
   solution.residual = std::numeric_limits<double>::infinity();
   best_iteration_ = 0;
   double last_length = 1.0;

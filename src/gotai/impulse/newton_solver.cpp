@@ -17,7 +17,7 @@ constexpr int guess_steps = 10;  // of polish() from a guess before approach() i
 constexpr std::array<double, 6> proximal_softness = {1e6, 1e5, 1e6, 1e4, 1e5, 1e3};
 constexpr int proximal_rounds = 8;
 constexpr int proximal_polish_steps = 15;
-constexpr double worthwhile_progress = 0.9;  // residual after / before
+constexpr double worthwhile_descent = 0.9;  // residual after / before
 
 // What a contact does; the projection on the friction law is smooth within each mode.
 enum class Mode { open, stick, slide };
@@ -95,7 +95,7 @@ void NewtonSolver::polish_proximally(const ConeProblem& problem, double limit,
         solution.y = velocities_of(problem, solution.p);
         solution.residual = before;
       }
-      if (solution.residual > worthwhile_progress * before) break;
+      if (solution.residual > worthwhile_descent * before) break;
     }
   }
   softness_ = 1.0;

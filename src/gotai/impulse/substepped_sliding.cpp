@@ -9,7 +9,7 @@
 namespace gotai::impulse {
 namespace {
 
-constexpr std::size_t kPairGrain = 32;  // pairs worth a task of their own
+constexpr std::size_t kSharingGrain = 32;  // pairs worth a task of their own
 
 /// Does any contact slide faster than friction could stop within the step?
 bool is_sliding(const model::BodyState& bodies, const model::ContactSet& contacts,
@@ -30,7 +30,7 @@ bool is_sliding(const model::BodyState& bodies, const model::ContactSet& contact
 
 void SubsteppedConstraint::share_loads(const model::BodyState& bodies) {
   const double stopping_speed = settings_.gravity.norm() * plan_.dt;
-  parallel_for(contacts_->pairs.size(), kPairGrain, [&](std::size_t p) {
+  parallel_for(contacts_->pairs.size(), kSharingGrain, [&](std::size_t p) {
     const model::ContactPair& pair = contacts_->pairs[p];
     if (pair.size() >= 3 && is_sliding(bodies, *contacts_, pair, stopping_speed)) share_load(pair);
   });

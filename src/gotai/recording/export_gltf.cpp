@@ -12,6 +12,7 @@
 
 #include "gotai/core/error.h"
 #include "gotai/recording/export.h"
+#include "gotai/recording/float_vectors.h"
 #include "gotai/recording/output_stream.h"
 #include "gotai/recording/surroundings.h"
 #include "gotai/recording/thin_keys.h"
@@ -141,10 +142,6 @@ class Document {
     animation.channels.push_back(channel);
   }
 
-  static void push(std::vector<float>& out, const Vec3& v) {
-    for (int k = 0; k < 3; ++k) out.push_back(static_cast<float>(v[k]));
-  }
-
   void write(const std::string& path, bool binary) {
     tinygltf::TinyGLTF writer;
     OutputStream out(path);
@@ -213,7 +210,7 @@ void animate(Document& document, int node, const Track& track, double diagonal, 
   if (p_keys.size() > 1) {
     for (const std::size_t key : p_keys) {
       times.push_back(static_cast<float>(track.times[key]));
-      Document::push(values, track.positions[key]);
+      push(values, track.positions[key]);
     }
     document.add_channel(node, "translation", times, values, 3);
   }

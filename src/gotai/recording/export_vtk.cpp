@@ -8,15 +8,12 @@
 
 #include "gotai/core/error.h"
 #include "gotai/recording/export.h"
+#include "gotai/recording/float_vectors.h"
 #include "gotai/recording/output_stream.h"
 #include "gotai/recording/surroundings.h"
 
 namespace gotai::recording {
 namespace {
-
-void push(std::vector<float>& out, const Vec3& v) {
-  for (int k = 0; k < 3; ++k) out.push_back(static_cast<float>(v[k]));
-}
 
 /// One .vtp file: declare arrays in the order of the sections, then write.
 class PolyData {

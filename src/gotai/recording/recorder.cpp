@@ -8,6 +8,7 @@
 
 #include "gotai/core/error.h"
 #include "gotai/recording/checkpoint.h"
+#include "gotai/recording/float_vectors.h"
 #include "gotai/recording/hdf5_file.h"
 #include "gotai/recording/layout.h"
 
@@ -31,10 +32,6 @@ struct Pending {
 
   std::size_t size() const { return pose.size() + velocity.size() + 12 * contact_gap.size(); }
 };
-
-void push(std::vector<float>& out, const Vec3& v) {
-  for (int k = 0; k < 3; ++k) out.push_back(static_cast<float>(v[k]));
-}
 
 /// The first frame number after a time.
 std::uint64_t frame_after(double time, double fps) {
