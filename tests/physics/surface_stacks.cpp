@@ -12,7 +12,7 @@
 namespace gotai {
 namespace {
 
-constexpr int kLevel = 6;
+constexpr int kStackLevel = 6;
 constexpr int kCubes = 10;
 
 struct Stand {
@@ -26,7 +26,7 @@ Stand stack_for_ten_seconds(double aside, double turned, unsigned seed) {
   model::Settings settings;
   settings.gravity = Vec3(0, 0, -9.81);
   settings.collision.model = model::CollisionModel::surface;
-  settings.collision.level = kLevel;
+  settings.collision.level = kStackLevel;
   settings.impulse.contacts = model::ContactTreatment::reduced;
   settings.time.step = 1.0 / 60.0;
   World world(settings);
@@ -37,7 +37,7 @@ Stand stack_for_ten_seconds(double aside, double turned, unsigned seed) {
   world.add_plane({});
   static const auto cube = std::make_shared<const voxel::Shape>(
       voxel::make_shape("cube", geometry::generate({.shape = "cube"}),
-                        {.prepared_level = kLevel, .surface_level = kLevel}));
+                        {.prepared_level = kStackLevel, .surface_level = kStackLevel}));
   const ShapeId shape = world.add_shape(cube);
   Random random(seed);
   for (int k = 0; k < kCubes; ++k) {
