@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "gotai/collision/anchored_contacts.h"
 #include "gotai/collision/broad_phase.h"
 #include "gotai/collision/sphere_contacts.h"
 #include "gotai/collision/sphere_tree.h"
@@ -89,6 +90,19 @@ void join(std::span<Chunk> chunks, model::ContactSet& out) {
   out.resize(total);
   parallel_for(chunks.size(), 8,
                [&](std::size_t c) { place(chunks[c].contacts, chunks[c].begin, out); });
+}
+
+/// The broad phase pairs bodies by the world's fastest. Drops pairs of shapes whose spheres are
+/// farther apart than the two bodies can come in the step.
+void drop_distant_pairs(const model::BodyState& bodies, double dt, double margin,
+                        std::vector<BodyPair>& pairs) {
+  std::erase_if(pairs, [&](const BodyPair& pair) {
+    if (bodies.geometry[pair.body_b] != model::Geometry::shape) return false;
+    const PairMotion motion(bodies, pair, dt);
+    const double far = bodies.bounding_radius[pair.body_a] + bodies.bounding_radius[pair.body_b] +
+                       motion.reach(margin) + kAnchorTolerance * motion.size();
+    return (bodies.x_W[pair.body_a] - bodies.x_W[pair.body_b]).squaredNorm() > far * far;
+  });
 }
 
 }  // namespace
@@ -234,6 +248,9 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
                          surface && options.contacts == model::ContactTreatment::reduced);
   storage.refresh_radii(bodies, settings);
   storage.broad_phase.find_pairs(bodies, storage.radius, margin, storage.candidates);
+  if (surface && options.dt > 0.0) {
+    drop_distant_pairs(bodies, options.dt, margin, storage.candidates);
+  }
   if (surface) storage.carry_over_memories(bodies);
   const bool anchored = surface && options.anchors != nullptr && options.dt > 0.0 &&
                         options.contacts == model::ContactTreatment::reduced;

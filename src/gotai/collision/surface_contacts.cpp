@@ -172,7 +172,7 @@ class FieldContacts {
     c.area = facing_area(samples_, hit.sample, d_P);
     if (samples_of_b_) {
       c.normal_A = R_QP_ * d_P;
-      c.point_A = X_QP_ * own.x_P - p_MA_ + c.gap * c.normal_A;
+      c.point_A = R_QP_ * own.x_P + (X_QP_.p - p_MA_) + c.gap * c.normal_A;
     } else {
       c.normal_A = -d_P;
       c.point_A = own.x_P - p_MA_;
@@ -305,7 +305,7 @@ void refine_kept(const BodyState& bodies, const BodyPair& pair, Shapes shapes, E
 void emit(const BodyState& bodies, const BodyPair& pair, const ContactCandidate& c,
           const Mat3& R_WA, const Mat3& R_WB, model::ContactSet& out) {
   const Vec3& x_A = bodies.x_W[pair.body_a];
-  const Vec3 normal = R_WA * c.normal_A;
+  const Vec3 normal = (R_WA * c.normal_A).normalized();
   const Vec3 on_a = R_WA * c.point_A;
   const Vec3 on_b = on_a - c.gap * normal;
   out.push(x_A + 0.5 * (on_a + on_b), normal, c.gap, c.point_A,
@@ -337,9 +337,6 @@ void find_candidates(const BodyState& bodies, const BodyPair& pair, Shapes shape
     append_face_contacts(bodies, pair, shapes, smooth, reach, motion, scratch);
     return;
   }
-  const double far =
-      bodies.bounding_radius[pair.body_a] + bodies.bounding_radius[pair.body_b] + reach;
-  if ((bodies.x_W[pair.body_a] - bodies.x_W[pair.body_b]).squaredNorm() > far * far) return;
   if (near != nullptr && is_still_apart(*near, bodies, pair, shapes, reach)) return;
   for (const bool samples_of_b : {false, true}) {
     NearSamples* one_way = near == nullptr ? nullptr : &near->way[samples_of_b ? 1 : 0];
@@ -376,8 +373,8 @@ void anchor_kept(const BodyState& bodies, double reach, const SurfaceScratch& sc
   for (const std::uint32_t k : scratch.reduction.kept) {
     const ContactCandidate& c = scratch.candidates[k];
     anchor.contacts.push_back({c.point_A, anchor.X_BA.p + R_BA * (c.point_A - c.gap * c.normal_A),
-                               R_BA * c.normal_A, c.share_A - (0.5 * c.gap) * c.normal_A, c.area,
-                               c.feature});
+                               (R_BA * c.normal_A).normalized(),
+                               c.share_A - (0.5 * c.gap) * c.normal_A, c.area, c.feature});
   }
 }
 

@@ -17,8 +17,14 @@ double facing_area(const voxel::SurfaceModel& model, std::uint32_t sample, const
 }
 
 Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, const Vec3& toward) {
-  const Vec3 axis = to_double(tree.normal[sample]).normalized();
+  // More than 89 degrees from every normal: the surface lies along the other body, not against it.
+  constexpr double kGrazing = 0.0175;
+  const Vec3 axis = to_double(tree.normal[sample]);
   const double cosine = static_cast<double>(tree.cone_cosine[sample]);
+  // Most samples of flat faces have one normal.
+  if (cosine >= 1.0 && tree.edge[sample] < 0) {
+    return toward.dot(axis) <= kGrazing ? Vec3(Vec3::Zero()) : axis;
+  }
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   Vec3 d = toward;
   if (tree.edge[sample] >= 0) {
@@ -32,8 +38,6 @@ Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, co
   }
   const double along_axis = d.dot(axis);
   if (along_axis >= cosine) return d;
-  // More than 89 degrees from every normal: the surface lies along the other body, not against it.
-  constexpr double kGrazing = 0.0175;
   if (along_axis <= kGrazing - sine) return Vec3::Zero();
   const Vec3 across = d - along_axis * axis;
   return cosine * axis + (sine / across.norm()) * across;

@@ -24,7 +24,8 @@ double facing_area(const voxel::SurfaceModel& model, std::uint32_t sample, const
 /// Turns the normal that a field suggests into one that the sample's own surface allows: the
 /// nearest direction in the cone of its outward normals, across the edge for samples of an edge.
 /// @param toward  unit, from the sample into the other body; the sample's frame S
-/// @return the same, within the cone; zero when the sample faces away from the other body
+/// @return the same, within the cone, unit to single precision; zero when the sample faces away
+/// from the other body
 Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, const Vec3& toward);
 
 }  // namespace gotai::collision

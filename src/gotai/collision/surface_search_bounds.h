@@ -15,6 +15,9 @@ namespace gotai::collision {
 /// Rounding of stored values: one fine and one coarse unit are below this for all fields [cells].
 inline constexpr float kStoredRounding = 0.02F;
 
+/// Stands for the value of samples that are farther away than any margin [cells].
+inline constexpr float kFarBeyond = 1e30F;
+
 /// What is added to the square of a sphere's radius when the value at its centre comes from the
 /// fine and from the coarse lattice [cells^2]: 3/4 s_m^2 + 3/4 s_x^2.
 inline std::array<float, 2> squared_slack(const voxel::DistanceField& field, float margin) {
