@@ -21,7 +21,7 @@ constexpr float kShortestLife = 4.0F;    // searches that a list must serve to b
 constexpr float kFloatRounding = 2e-3F;  // of single-precision positions and values [cells]
 
 // No point nearer to the samples' origin than `radius` has moved farther between two poses.
-float displacement(const SamplePose& from, const SamplePose& to, float radius) {
+float farthest_sample(const SamplePose& from, const SamplePose& to, float radius) {
   float turned = 0.0F;
   for (std::size_t i = 0; i < 9; ++i) {
     const float difference = to.rotation[i] - from.rotation[i];
@@ -53,7 +53,7 @@ void search_field(const voxel::SurfaceModel& samples, const voxel::DistanceField
                   SurfaceSearch& search) {
   // Samples lie in the shape's cube.
   const float radius = static_cast<float>(0.8661 * samples.edge);
-  if (near.margin >= 0.0F) near.moved = displacement(near.pose, pose, radius);
+  if (near.margin >= 0.0F) near.moved = farthest_sample(near.pose, pose, radius);
   if (suffices(near, near.moved, margin, field)) {
     search_packets(samples.tree, field, pose, margin, near.packets, search);
     return;
