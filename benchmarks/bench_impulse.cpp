@@ -4,9 +4,13 @@
 ///                                     iterative solver to the same residual: processor time per
 ///                                     contact for 4 layers of 5^2 and of SIDE^2 hexapods
 ///   bench_impulse rest [SECONDS]      a resting pile under every method: the energy it gains
+///   bench_impulse residual [SIDE] [SETTLE]
+///                                     solvers on the same state of a pile of 3 SIDE^2 hexapods on
+///                                     reduced surface contacts: residual against time
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <string>
@@ -248,6 +252,88 @@ void growth(int large_side, double settle, double residual) {
   fmt::print("growth {:.2f}\n", per_contact[1] / per_contact[0]);
 }
 
+/// Solvers of the constraint method, each from the same state of a falling pile. The first steps
+/// only warm up: what contacts remember from the sub-stepped solver is a sub-step's impulse.
+void residual(int side, double settle) {
+  constexpr int warm_up = 5;
+  constexpr int steps = 20;
+  constexpr int layers = 3;
+  constexpr double spacing = 2.1;
+  constexpr int level = 6;
+  const auto shape = std::make_shared<const voxel::Shape>(
+      voxel::make_shape("hexapod", geometry::generate({.shape = "hexapod"}),
+                        {.prepared_level = level, .surface_level = level}));
+  const auto make_world = [&](model::SolverName solver, double tolerance, int most_iterations) {
+    model::Settings settings = settings_of(level, 1.0 / 60.0);
+    settings.collision.model = model::CollisionModel::surface;
+    settings.impulse.contacts = model::ContactTreatment::reduced;
+    settings.impulse.solver = solver;
+    settings.impulse.tolerance = tolerance;
+    settings.impulse.max_iterations = most_iterations;
+    World world(settings);
+    set_surface(world, 0.2, 0.5);
+    const ShapeId id = world.add_shape(shape);
+    Random random(3);
+    for (int k = 0; k < layers * side * side; ++k) {
+      BodyDescription body;
+      body.shape = id;
+      body.mass = 1.0;
+      body.com_position =
+          spacing * Vec3(k % side + 0.5 - 0.5 * side, k / side % side + 0.5 - 0.5 * side,
+                         k / (side * side) + 0.75);
+      body.X_WM.q = random.rotation();
+      world.add_body(body);
+    }
+    ContainerDescription box;
+    box.inner = Vec3(spacing * side, spacing * side, 2.0 * spacing * layers);
+    world.add_container(box);
+    return world;
+  };
+  struct Candidate {
+    const char* name;
+    model::SolverName solver;
+    double tolerance;
+    int most_iterations;
+  };
+  using model::SolverName;
+  const model::ImpulseSettings defaults;
+  World start = make_world(SolverName::substepped, defaults.tolerance, defaults.max_iterations);
+  start.run_until(settle);
+  const Snapshot state = start.snapshot();
+  fmt::print(
+      "{} hexapods after {:g} s, {} contacts\n"
+      "| solver | ms of impulses per step | residual m/s, mean / largest | iterations |\n"
+      "|---|---|---|---|\n",
+      layers * side * side, settle, start.contacts().size());
+  for (const Candidate& c :
+       {Candidate{"sub-stepped", SolverName::substepped, defaults.tolerance,
+                  defaults.max_iterations},
+        {"iterative, 10 sweeps", SolverName::iterative, 1e-12, 10},
+        {"iterative, 30 sweeps", SolverName::iterative, 1e-12, 30},
+        {"iterative, 100 sweeps", SolverName::iterative, 1e-12, 100},
+        {"iterative, 300 sweeps", SolverName::iterative, 1e-12, 300},
+        {"iterative, 1000 sweeps", SolverName::iterative, 1e-12, 1000},
+        {"exact", SolverName::exact, defaults.tolerance, defaults.max_iterations}}) {
+    World world = make_world(c.solver, c.tolerance, c.most_iterations);
+    world.restore(state);
+    double ms = 0.0;
+    double sum = 0.0;
+    double largest = 0.0;
+    double iterations = 0.0;
+    for (int n = 0; n < warm_up + steps; ++n) {
+      const model::StepReport report = world.step();
+      if (n < warm_up) continue;
+      ms += 1e3 * report.impulse_s / steps;
+      sum += report.solve.residual / steps;
+      largest = std::max(largest, report.solve.residual);
+      iterations += static_cast<double>(report.solve.iterations) / steps;
+    }
+    fmt::print("| {} | {:.2f} | {:.1e} / {:.1e} | {:.0f} |\n", c.name, ms, sum, largest,
+               iterations);
+    std::fflush(stdout);
+  }
+}
+
 double fastest_body(const World& world) {
   double fastest = 0.0;
   for (const Vec3& v : world.bodies().v_W) fastest = std::max(fastest, v.norm());
@@ -324,10 +410,12 @@ int main(int argc, char** argv) {
            argc > 4 ? std::atof(argv[4]) : 1e-3);
   } else if (part == "rest") {
     rest(argc > 2 ? std::atof(argv[2]) : 60.0);
+  } else if (part == "residual") {
+    residual(argc > 2 ? std::atoi(argv[2]) : 4, argc > 3 ? std::atof(argv[3]) : 1.5);
   } else {
     fmt::print(stderr,
                "usage: bench_impulse apparent [LEVEL] | growth [SIDE] [SETTLE] [RESIDUAL] | rest "
-               "[SECONDS]\n");
+               "[SECONDS] | residual [SIDE] [SETTLE]\n");
     return 2;
   }
   return 0;

@@ -19,16 +19,17 @@ constexpr std::size_t kLeastPerWave = 3;  // batches, about 1 us each
 constexpr int kSubsteps = 8;
 // Islands of at most so many contacts are stacks.
 constexpr std::uint32_t kLargestStack = 256;
-// By kind of island. Ten sweeps of either sort let ten cubes stand on top of each other.
-struct Sweeps {
-  std::uint32_t biased;
-  std::uint32_t relax;
+// By kind of island. Ten sweeps of either sort let ten cubes stand on top of each other. Overlap
+// recovers like a spring with a share of the sub-step rate, heavily damped (doubled against bodies
+// that do not move). Half the share leaves piles half as deep again in each other; more of it
+// shakes stacks.
+struct Effort {
+  std::uint32_t biased_sweeps;
+  std::uint32_t relax_sweeps;
+  double frequency_share;
 };
-constexpr std::array<Sweeps, kIslandKinds> kSweeps = {{{10, 10}, {2, 4}, {1, 2}}};
-// Overlap recovers like a spring with half of the sub-step rate, heavily damped (doubled against
-// bodies that do not move). A quarter leaves piles half as deep again in each other.
+constexpr std::array<Effort, kIslandKinds> kEffort = {{{10, 10, 0.5}, {2, 4, 0.5}, {1, 2, 0.65}}};
 constexpr double kDampingRatio = 10.0;
-constexpr double kFrequencyShare = 0.5;
 
 struct Softness {
   double bias_rate;  // [1/s]
@@ -86,7 +87,8 @@ void SubsteppedConstraint::prepare(const model::BodyState& bodies,
     fill_batch(k, bodies, materials);
     const PairBatch& batch = batches_[k];
     for (std::uint32_t lane = 0; lane < batch.lanes; ++lane)
-      fill_rows(schedule_->pair[batch_pairs_[k] + lane], lane, batch.row_begin, bodies, memory);
+      fill_rows(schedule_->pair[in_batch_[k].first_pair + lane], lane, batch.row_begin, bodies,
+                memory);
     soft_pass(SoftPass::prepare, problem(), k, 1);
   });
   share_loads(bodies);
@@ -95,15 +97,16 @@ void SubsteppedConstraint::prepare(const model::BodyState& bodies,
   report_.substeps = static_cast<std::uint32_t>(plan.substeps);
   for (std::size_t kind = 0; kind < kIslandKinds; ++kind) {
     if (waves_[kind].empty()) continue;
-    const auto [biased, relax] = kSweeps[kind];
-    report_.iterations = std::max(report_.iterations, report_.substeps * (biased + relax));
+    report_.iterations =
+        std::max(report_.iterations,
+                 report_.substeps * (kEffort[kind].biased_sweeps + kEffort[kind].relax_sweeps));
   }
 }
 
 void SubsteppedConstraint::lay_out_batches(const model::BodyState& bodies) {
   schedule_ = &scheduler_.build(bodies, *contacts_, kLargestStack);
   batches_.clear();
-  batch_pairs_.clear();
+  in_batch_.clear();
   slots_.resize(contacts_->size());
   for (std::vector<Range>& waves : waves_) waves.clear();
   std::uint32_t rows = 0;
@@ -114,7 +117,7 @@ void SubsteppedConstraint::lay_out_batches(const model::BodyState& bodies) {
     const std::uint32_t end = schedule_->wave_begin[wave + 1];
     for (std::uint32_t first = schedule_->wave_begin[wave]; first < end; first += kLanes) {
       PairBatch& batch = batches_.emplace_back();
-      batch_pairs_.push_back(first);
+      in_batch_.push_back({first, static_cast<std::uint32_t>(kind)});
       batch.lanes = std::min(static_cast<std::uint32_t>(kLanes), end - first);
       batch.row_begin = rows;
       std::uint32_t longest = 0;
@@ -135,11 +138,12 @@ void SubsteppedConstraint::lay_out_batches(const model::BodyState& bodies) {
 void SubsteppedConstraint::fill_batch(std::size_t k, const model::BodyState& bodies,
                                       const model::MaterialTable& materials) {
   const double h = plan_.substep_dt();
-  const Softness moving = softness(kFrequencyShare / h, h);
-  const Softness fixed = softness(2.0 * kFrequencyShare / h, h);
+  const double frequency_hz = kEffort[in_batch_[k].kind].frequency_share / h;
+  const Softness moving = softness(frequency_hz, h);
+  const Softness fixed = softness(2.0 * frequency_hz, h);
   PairBatch& batch = batches_[k];
   for (std::uint32_t l = 0; l < batch.lanes; ++l) {
-    const model::ContactPair& pair = contacts_->pairs[schedule_->pair[batch_pairs_[k] + l]];
+    const model::ContactPair& pair = contacts_->pairs[schedule_->pair[in_batch_[k].first_pair + l]];
     const model::BodyIndex a = pair.body_a;
     const model::BodyIndex b = pair.body_b;
     batch.body_a[l] = a + 1;
@@ -259,7 +263,8 @@ void SubsteppedConstraint::solve(const model::BodyState& bodies, const std::vect
   read_velocities(bodies);
   for (std::size_t kind = 0; kind < kIslandKinds; ++kind) {
     add_waves(kind, SoftPass::warm_start);
-    for (std::uint32_t n = 0; n < kSweeps[kind].biased; ++n) add_waves(kind, SoftPass::biased);
+    for (std::uint32_t n = 0; n < kEffort[kind].biased_sweeps; ++n)
+      add_waves(kind, SoftPass::biased);
   }
   run_passes();
   write_changes(bodies, update);
@@ -269,7 +274,7 @@ void SubsteppedConstraint::relax(const model::BodyState& bodies, model::Update& 
   read_velocities(bodies);
   add_at_once(SoftPass::advance_gaps);
   for (std::size_t kind = 0; kind < kIslandKinds; ++kind) {
-    for (std::uint32_t n = 1; n < kSweeps[kind].relax; ++n) add_waves(kind, SoftPass::relax);
+    for (std::uint32_t n = 1; n < kEffort[kind].relax_sweeps; ++n) add_waves(kind, SoftPass::relax);
     add_waves(kind, SoftPass::relax_last);
   }
   run_passes();

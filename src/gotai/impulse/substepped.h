@@ -46,6 +46,11 @@ class SubsteppedConstraint final : public ImpulseMethod {
     std::uint32_t row = 0;
     std::uint32_t lane = 0;
   };
+  /// Pairs of a batch.
+  struct Contents {
+    std::uint32_t first_pair = 0;  ///< in the schedule's order
+    std::uint32_t kind = 0;        ///< IslandKind
+  };
   struct Range {
     std::uint32_t begin = 0;
     std::uint32_t end = 0;
@@ -88,7 +93,7 @@ class SubsteppedConstraint final : public ImpulseMethod {
   ContactScheduler scheduler_;
   const ContactSchedule* schedule_ = nullptr;
   std::vector<PairBatch> batches_;
-  std::vector<std::uint32_t> batch_pairs_;  // first pair of every batch in the schedule's order
+  std::vector<Contents> in_batch_;                      // per batch
   std::array<std::vector<Range>, kIslandKinds> waves_;  // of batches_, by IslandKind
   std::vector<Stage<SoftPass>> stages_;
   std::vector<ContactRow> rows_;
