@@ -12,12 +12,12 @@
 namespace gotai {
 namespace {
 
-constexpr int kLevel = 5;
+constexpr int kBitsLevel = 5;
 
 std::shared_ptr<const voxel::Shape> shape_of(const std::string& name) {
   return std::make_shared<const voxel::Shape>(
       voxel::make_shape(name, geometry::generate({.shape = name}),
-                        {.prepared_level = kLevel, .surface_level = kLevel}));
+                        {.prepared_level = kBitsLevel, .surface_level = kBitsLevel}));
 }
 
 // Shapes are made once: they are the same for all worlds.
@@ -31,7 +31,7 @@ const std::vector<std::shared_ptr<const voxel::Shape>>& shapes() {
 World small_pile() {
   model::Settings settings;
   settings.collision.model = model::CollisionModel::surface;
-  settings.collision.level = kLevel;
+  settings.collision.level = kBitsLevel;
   settings.impulse.contacts = model::ContactTreatment::reduced;
   settings.time.step = 1.0 / 60.0;
   World world(settings);

@@ -10,18 +10,18 @@
 namespace gotai {
 namespace {
 
-constexpr int kLevel = 6;
+constexpr int kMeshLevel = 6;
 
 ShapeId add(World& world, const std::string& name) {
   return world.add_shape(std::make_shared<const voxel::Shape>(
       voxel::make_shape(name, geometry::generate({.shape = name}),
-                        {.prepared_level = kLevel, .surface_level = kLevel})));
+                        {.prepared_level = kMeshLevel, .surface_level = kMeshLevel})));
 }
 
 World empty_world() {
   model::Settings settings;
   settings.collision.model = model::CollisionModel::surface;
-  settings.collision.level = kLevel;
+  settings.collision.level = kMeshLevel;
   settings.impulse.contacts = model::ContactTreatment::reduced;
   settings.time.step = 1.0 / 60.0;
   World world(settings);
