@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "gotai/core/random.h"
 #include "gotai/geometry/generate.h"
 #include "gotai/world/world.h"
 
@@ -122,6 +123,34 @@ TEST(Chain, TenLinksHangForHalfAMinute) {
   while (world.time() < 30.0) {
     for (int k = 0; k < 60; ++k) world.step();
     ASSERT_EQ(numbers(), start) << world.time();
+  }
+}
+
+// Rings that meet at up to 20 m/s and turn at 25 rad/s cross more than a tube within a step: what
+// they will meet then must be found before.
+TEST(FastRings, DoNotPassThroughEachOther) {
+  constexpr int kPairs = 200;
+  constexpr double kRing = 0.5 / 1.3;
+  World world = world_with(Vec3::Zero());
+  const ShapeId id = world.add_shape(pile_shape("torus"));
+  Random random(5);
+  for (int k = 0; k < kPairs; ++k) {
+    const Vec3 from = random.unit_vector();
+    for (const double side : {-1.0, 1.0}) {
+      BodyDescription ring;
+      ring.shape = id;
+      ring.X_WM.p = Vec3(10.0 * k, 0, 0) + 0.6 * side * from + 0.1 * random.unit_vector();
+      ring.X_WM.q = random.rotation();
+      ring.velocity = -10.0 * side * from;
+      ring.angular_velocity = 25.0 * random.unit_vector();
+      world.add_body(ring);
+    }
+  }
+  for (int k = 0; k < 12; ++k) world.step();
+  for (model::BodyIndex i = 0; i < 2 * kPairs; i += 2) {
+    EXPECT_EQ(linking_number(world.mesh_pose(world.id(i)), world.mesh_pose(world.id(i + 1)), kRing),
+              0)
+        << i;
   }
 }
 

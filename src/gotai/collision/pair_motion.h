@@ -54,7 +54,7 @@ class PairMotion {
   // approach within a step; and the farthest between shapes.
   static constexpr double kRestReach = 0.003;
   static constexpr double kImpactReach = 0.025;
-  static constexpr double kFarthestReach = 0.1;
+  static constexpr double kFarthestReach = 0.4;
   static constexpr double kApproachSafety = 1.3;
 
   double dt_;
