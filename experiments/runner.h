@@ -21,6 +21,8 @@ struct RunOptions {
 };
 
 /// An experiment that was run.
+// clang-tidy 14 suspects the library of JSON of throwing when moved.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 struct Result {
   const Experiment* experiment = nullptr;
   Effort effort = Effort::quick;

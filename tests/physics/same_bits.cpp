@@ -43,9 +43,10 @@ World small_pile() {
   world.add_container({.name = "container", .inner = Vec3(3.6, 3.6, 8.0)});
   Random random(11);
   for (int k = 0; k < 16; ++k) {
+    const int layer = k / 4;
     BodyDescription body;
-    body.shape = static_cast<ShapeId>((k + k / 4) % 4);
-    body.X_WM.p = Vec3(k % 2 - 0.5, k / 2 % 2 - 0.5, k / 4 + 0.6) * 1.75;
+    body.shape = static_cast<ShapeId>((k + layer) % 4);
+    body.X_WM.p = Vec3((k & 1) - 0.5, ((k >> 1) & 1) - 0.5, layer + 0.6) * 1.75;
     body.X_WM.q = random.rotation();
     world.add_body(body);
   }

@@ -14,11 +14,12 @@ namespace {
 TEST(Stages, EveryItemOnceAndAfterTheStagesBefore) {
   constexpr int kStages = 400;
   std::vector<Stage<int>> stages;
+  stages.reserve(kStages);
   for (int s = 0; s < kStages; ++s)
     stages.push_back({s, static_cast<std::uint32_t>(10 * s), static_cast<std::uint32_t>(s % 9)});
   for (const int threads : {1, 2, 4}) {
     const ThreadLimit limit(threads);
-    std::vector<std::atomic<std::uint32_t>> visits(10 * kStages);
+    std::vector<std::atomic<std::uint32_t>> visits(std::size_t{10} * kStages);
     std::vector<std::atomic<std::uint32_t>> finished(kStages);
     std::atomic<int> early{0};
     run_stages(stages, 1, [&](int stage, std::uint32_t first, std::uint32_t count) {
