@@ -81,6 +81,50 @@ TEST_P(Search, FindsWhatLookingAtEverySampleFinds) {
   EXPECT_LT(search.tests, all) << "pruning is useless";
 }
 
+// The same hits however far spheres are descended into, and where there are none to look at, no
+// sample comes nearer than was promised, wherever it moves.
+TEST_P(Search, ClearanceHoldsForEverySampleAndMotion) {
+  const ShapePointer a = make(GetParam(), 5);
+  const ShapePointer b = make("hexapod", 5);
+  const voxel::SurfaceTree& tree = a->surface.tree;
+  const voxel::DistanceField& field = b->surface.field;
+  Random random(21);
+  SurfaceSearch plain;
+  SurfaceSearch wide;
+  int promises = 0;
+  double tightest = 1.0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const Mat3 R = random.rotation().toRotationMatrix();
+    const Vec3 t = random.uniform(0.3, 1.5) * random.unit_vector();
+    const SamplePose pose = make_sample_pose(R, t);
+    const auto margin = static_cast<float>(random.uniform(0.0, 0.1));
+    const auto up_to = margin + static_cast<float>(random.uniform(0.0, 0.1));
+    search_field(tree, field, pose, margin, plain);
+    search_field_widely(tree, field, pose, margin, up_to, wide);
+    ASSERT_EQ(plain.hits.size(), wide.hits.size());
+    ASSERT_EQ(
+        std::memcmp(plain.hits.data(), wide.hits.data(), plain.hits.size() * sizeof(SurfaceHit)),
+        0);
+    if (wide.clearance < 0.0F) continue;
+    ASSERT_TRUE(plain.hits.empty());
+    ++promises;
+    const auto clearance = static_cast<double>(wide.clearance);
+    double least = 1.0;
+    for (std::size_t i = 0; i < tree.size(); ++i) {
+      const Vec3 x = R * point_of(tree, i) + t;
+      least = std::min(least, voxel::evaluate(field, x).distance);
+      // Straight towards the other body is worst; any other way is allowed, too.
+      const double d = random.uniform(0.0, 0.6);
+      const Vec3 way = trial % 2 == 0 ? Vec3(-x.normalized()) : random.unit_vector();
+      const double there = voxel::evaluate(field, x + d * way).distance;
+      ASSERT_GE(there, std::min(clearance - d, static_cast<double>(up_to)) - 1e-5);
+    }
+    tightest = std::min(tightest, least - clearance);
+  }
+  EXPECT_GT(promises, 20);
+  EXPECT_LT(tightest, 0.2) << "promises nothing";
+}
+
 // Bits, not values: what a run computes must not depend on the processor.
 TEST_P(Search, GivesTheSameBitsOnEveryKernel) {
   if (!is_available(Kernel::avx2)) GTEST_SKIP() << "this processor has no AVX2";
@@ -102,6 +146,12 @@ TEST_P(Search, GivesTheSameBitsOnEveryKernel) {
     search_field(a->surface.tree, b->surface.field, pose, margin, portable, Kernel::portable);
     search_field(a->surface.tree, b->surface.field, pose, margin, avx2, Kernel::avx2);
     ASSERT_TRUE(equal());
+    search_field_widely(a->surface.tree, b->surface.field, pose, margin, 2.0F * margin, portable,
+                        Kernel::portable);
+    search_field_widely(a->surface.tree, b->surface.field, pose, margin, 2.0F * margin, avx2,
+                        Kernel::avx2);
+    ASSERT_TRUE(equal());
+    ASSERT_EQ(portable.clearance, avx2.clearance);
     found += portable.hits.size();
     const Eigen::Vector3f n = random.unit_vector().cast<float>();
     const auto offset = static_cast<float>(random.uniform(-0.2, 0.6));

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 
 #include "gotai/collision/curved_samples.h"
 #include "gotai/collision/surface_search.h"
@@ -34,5 +36,9 @@ struct ExactSurface {
   voxel::TriangleTree tree;
   CurvedSamples curved;
 };
+
+/// Exact distances to the surfaces of shapes, by BodyState::shape. Null where the shape's surface
+/// is not closed or overlaps itself: its field is all there is.
+using ExactSurfaces = std::span<const std::unique_ptr<const ExactSurface>>;
 
 }  // namespace gotai::collision

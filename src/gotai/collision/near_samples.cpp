@@ -49,31 +49,31 @@ bool is_still_empty(const NearSamples& near, float moved, float margin,
 }
 
 void search_field(const voxel::SurfaceModel& samples, const voxel::DistanceField& field,
-                  const SamplePose& pose, float margin, double motion, NearSamples& near,
+                  const SamplePose& pose, SearchReach reach, double motion, NearSamples& near,
                   SurfaceSearch& search) {
   // Samples lie in the shape's cube.
   const float radius = static_cast<float>(0.8661 * samples.edge);
   if (near.margin >= 0.0F) near.moved = farthest_sample(near.pose, pose, radius);
-  if (suffices(near, near.moved, margin, field)) {
-    search_packets(samples.tree, field, pose, margin, near.packets, search);
+  if (suffices(near, near.moved, reach.margin, field)) {
+    search_packets(samples.tree, field, pose, reach, near.packets, search);
     return;
   }
   near.forget();
   const float allowance = kAllowance * field.cell;
-  if (margin > field.cell || static_cast<float>(motion) * kShortestLife > allowance) {
-    search_field(samples.tree, field, pose, margin, search);
+  if (reach.margin > field.cell || static_cast<float>(motion) * kShortestLife > allowance) {
+    search_field(samples.tree, field, pose, reach, search);
     return;
   }
-  near.margin = margin + field.slope * allowance + kFloatRounding * field.cell;
+  near.margin = reach.margin + field.slope * allowance + kFloatRounding * field.cell;
   near.pose = pose;
   near.moved = 0.0F;
-  search_field(samples.tree, field, pose, near.margin, search);
+  search_field(samples.tree, field, pose, {near.margin, 0.0F}, search);
   near.packets.clear();
   for (const SurfaceHit& hit : search.hits) {
     const std::uint32_t packet = hit.sample / voxel::kLanes;
     if (near.packets.empty() || near.packets.back() != packet) near.packets.push_back(packet);
   }
-  search_packets(samples.tree, field, pose, margin, near.packets, search);
+  search_packets(samples.tree, field, pose, reach, near.packets, search);
 }
 
 }  // namespace gotai::collision

@@ -33,7 +33,7 @@ bool is_still_empty(const NearSamples& near, float moved, float margin,
 /// @param motion  the farthest that a sample is expected to move in the field until the next search
 ///                [m]: when the lists would not live long, none are made
 void search_field(const voxel::SurfaceModel& samples, const voxel::DistanceField& field,
-                  const SamplePose& pose, float margin, double motion, NearSamples& near,
+                  const SamplePose& pose, SearchReach reach, double motion, NearSamples& near,
                   SurfaceSearch& search);
 
 }  // namespace gotai::collision

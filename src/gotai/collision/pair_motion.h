@@ -3,12 +3,23 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "gotai/collision/broad_phase.h"
 #include "gotai/collision/reduction.h"
 #include "gotai/model/body_state.h"
 
 namespace gotai::collision {
+
+/// Which contacts may close within a step, in single precision: those whose gap is at most
+/// gap + time * (speed of approach along the normal). Frame A.
+struct Closing {
+  std::array<float, 3> velocity;  ///< of body a against b at a's centre of mass [m/s]
+  std::array<float, 3> turn;      ///< of body a against b [rad/s]
+  float gap;                      ///< [m]
+  float time;                     ///< [s]
+};
 
 /// How two bodies move against each other within a step, in the frame of body a (its axes, its
 /// centre of mass), and which contacts matter then. Lengths in metres.
@@ -47,6 +58,17 @@ class PairMotion {
     if (!(dt_ > 0.0)) return true;
     const double approach = std::max(0.0, -c.normal_A.dot(v_A_ + w_A_.cross(c.point_A)));
     return c.gap <= (kRestReach + kImpactReach) * size_ + kApproachSafety * approach * dt_;
+  }
+  /// The same for many contacts at a time.
+  Closing closing() const {
+    const Eigen::Vector3f v = v_A_.cast<float>();
+    const Eigen::Vector3f w = w_A_.cast<float>();
+    const double gap =
+        dt_ > 0.0 ? (kRestReach + kImpactReach) * size_ : std::numeric_limits<double>::infinity();
+    return {{v.x(), v.y(), v.z()},
+            {w.x(), w.y(), w.z()},
+            static_cast<float>(gap),
+            static_cast<float>(kApproachSafety * dt_)};
   }
 
  private:

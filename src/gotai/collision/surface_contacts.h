@@ -10,46 +10,34 @@
 
 #include "gotai/collision/broad_phase.h"
 #include "gotai/collision/exact_surface.h"
+#include "gotai/collision/field_contacts.h"
 #include "gotai/collision/near_samples.h"
-#include "gotai/collision/reduction.h"
 #include "gotai/collision/search_options.h"
-#include "gotai/collision/surface_search.h"
 #include "gotai/model/body_state.h"
 #include "gotai/model/contact_set.h"
 #include "gotai/voxel/shape.h"
 
 namespace gotai::collision {
 
-/// Key of a contact: which of the two bodies the sample is on (0: body_a, 1: body_b), or for planes
-/// and containers which face it meets (floor 0, walls 1..4), and the sample.
-constexpr model::FeatureKey surface_feature(std::uint32_t direction, std::uint32_t sample) {
-  return static_cast<model::FeatureKey>(direction) << 32U | sample;
-}
-
 /// What the last search of a pair leaves for the next.
 struct NearPair {
   /// The samples of body a in the field of body b, and the other way round.
   std::array<NearSamples, 2> way;
-  bool apart = false;  ///< neither had hits
-  Pose X_BA;           ///< of body a against body b then
+  bool apart = false;   ///< neither had hits
+  bool distant = true;  ///< the next search is probably without hits, and not near them
+  /// While no sample has moved farther than d since, no gap is below clearance - d, as long as that
+  /// is at most `clear_up_to` [m]; < 0: not known.
+  double clearance = -1.0;
+  double clear_up_to = 0.0;
+  Pose X_BA;  ///< of body a against body b when `apart` or `clearance` were found
 
   void forget() {
     for (NearSamples& near : way) near.forget();
     apart = false;
+    distant = true;
+    clearance = -1.0;
   }
 };
-
-/// Storage of the search for one pair after another.
-struct SurfaceScratch {
-  SurfaceSearch search;
-  std::vector<ContactCandidate> candidates;
-  Reduction reduction;
-  double reduction_error = 0.0;  ///< largest Reduction::error so far
-};
-
-/// Exact distances to the surfaces of shapes, by BodyState::shape. Null where the shape's surface
-/// is not closed or overlaps itself: its field is all there is.
-using ExactSurfaces = std::span<const std::unique_ptr<const ExactSurface>>;
 
 /// Appends the contacts of one pair with a gap up to the margin; body_a has a shape, body_b a
 /// shape, a plane or a container. Contacts that cannot close within options.dt are left out. With

@@ -31,6 +31,12 @@
 // f(x) >= f(x'), and |x' - m'| <= |x - m|, so the bound holds with I(m'). The cube's faces are four
 // cells from the shape, so f(x') > 0 and a hit has |x - x'| <= margin; hence |m - m'| <= r +
 // margin.
+//
+// Clearance. A sample of that sphere that has moved by up to d since is within r + d of m, so all
+// of this holds of where it is now with r + d for r. With S = 3/4 s_m^2 + 3/4 s_x^2 (for a margin
+// up to `wide`, by which s_x is chosen),
+//   f >= I(m) - sqrt((r + d)^2 + S) >= I(m) - sqrt(r^2 + S) - d   where that is at most `wide`;
+// beyond the cube f exceeds the distance to the cube, which is at least |m - m'| - r - d.
 
 #define GOTAI_KERNEL portable
 #define GOTAI_INLINE inline __attribute__((always_inline))
@@ -64,10 +70,17 @@ GOTAI_INLINE void gather_pairs(const std::int16_t* values, I8 index, F8& first, 
   }
 }
 
+GOTAI_INLINE F8 root(F8 x) {
+  for (int i = 0; i < kLanes; ++i) x[i] = __builtin_sqrtf(x[i]);
+  return x;
+}
+
 }  // namespace gotai::collision::portable
 
 #include "gotai/collision/surface_search_kernel.inc"
 #include "gotai/collision/triangle_search_kernel.inc"
+
+#include "gotai/collision/candidate_kernel.inc"
 
 #include "gotai/collision/reduction_kernel.inc"
 
@@ -99,26 +112,39 @@ bool is_available(Kernel kernel) {
 }
 
 void search_field(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
-                  const SamplePose& pose, float margin, SurfaceSearch& search, Kernel kernel) {
+                  const SamplePose& pose, SearchReach reach, SurfaceSearch& search, Kernel kernel) {
 #ifdef __x86_64__
   if (use_avx2(kernel)) {
-    search_field_avx2(samples, field, pose, margin, search);
+    search_field_avx2(samples, field, pose, reach, search);
     return;
   }
 #endif
-  portable::search_field(samples, field, pose, margin, search);
+  portable::search_field<false>(samples, field, pose, reach, reach.margin, search);
+}
+
+void search_field_widely(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                         const SamplePose& pose, SearchReach reach, float wide,
+                         SurfaceSearch& search, Kernel kernel) {
+#ifdef __x86_64__
+  if (use_avx2(kernel)) {
+    search_field_widely_avx2(samples, field, pose, reach, wide, search);
+    return;
+  }
+#endif
+  portable::search_field<true>(samples, field, pose, reach, wide, search);
 }
 
 void search_packets(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
-                    const SamplePose& pose, float margin, const std::vector<std::uint32_t>& packets,
-                    SurfaceSearch& search, Kernel kernel) {
+                    const SamplePose& pose, SearchReach reach,
+                    const std::vector<std::uint32_t>& packets, SurfaceSearch& search,
+                    Kernel kernel) {
 #ifdef __x86_64__
   if (use_avx2(kernel)) {
-    search_packets_avx2(samples, field, pose, margin, packets, search);
+    search_packets_avx2(samples, field, pose, reach, packets, search);
     return;
   }
 #endif
-  portable::search_packets(samples, field, pose, margin, packets, search);
+  portable::search_packets(samples, field, pose, reach, packets, search);
 }
 
 void search_half_space(const voxel::SurfaceTree& samples, const std::array<float, 3>& normal,
@@ -138,6 +164,30 @@ std::uint32_t nearest_triangle(const voxel::TriangleTree& tree, const std::array
   if (use_avx2(kernel)) return nearest_triangle_avx2(tree, point, limit);
 #endif
   return portable::nearest_triangle(tree, point, limit);
+}
+
+void make_candidates(const NearSurface& near, float margin, const Closing& closing,
+                     const HitLanes* hits, std::size_t packets, CandidateLanes* out,
+                     Kernel kernel) {
+#ifdef __x86_64__
+  if (use_avx2(kernel)) {
+    make_candidates_avx2(near, margin, closing, hits, packets, out);
+    return;
+  }
+#endif
+  portable::make_candidates(near, margin, closing, hits, packets, out);
+}
+
+void look_up_distances(const voxel::DistanceField& field, const SamplePose& pose, float margin,
+                       std::span<const std::array<float, 3>> points, std::span<float> distances,
+                       Kernel kernel) {
+#ifdef __x86_64__
+  if (use_avx2(kernel)) {
+    look_up_distances_avx2(field, pose, margin, points, distances);
+    return;
+  }
+#endif
+  portable::look_up_distances(field, pose, margin, points.data(), points.size(), distances.data());
 }
 
 FarthestWrench keep_wrench(WrenchLanes& lanes, std::uint32_t chosen, std::uint32_t position,

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "gotai/core/types.h"
@@ -35,9 +36,22 @@ struct alignas(32) SampledPacket {
   std::array<std::array<float, voxel::kLanes>, 3> slope;
 };
 
+/// How far a search looks.
+struct SearchReach {
+  /// Samples with at most this field value are hits [m].
+  float margin;
+  /// Of eight samples of a packet that are all farther than this only the nearest is a hit [m].
+  float sparse;
+
+  // NOLINTNEXTLINE(google-explicit-constructor): most searches have a margin and nothing else.
+  SearchReach(float margin_m, float sparse_m = std::numeric_limits<float>::infinity())
+      : margin(margin_m), sparse(sparse_m) {}
+};
+
 /// Storage of a search, and the work it did.
 struct SurfaceSearch {
   std::vector<SurfaceHit> hits;  ///< result, by ascending sample
+  float clearance = 0.0F;        ///< result of search_field_widely() [m]
   std::uint64_t tests = 0;       ///< spheres and samples looked up, summed over searches
   // Room for the packets of the height being searched, of the next, and for looked-up samples.
   std::vector<std::uint32_t> packet;
@@ -50,17 +64,27 @@ enum class Kernel : std::uint8_t { automatic, portable, avx2 };
 /// Whether this processor and build can run a kernel.
 bool is_available(Kernel kernel);
 
-/// Finds exactly the samples whose interpolated field value is at most `margin`: the same as
+/// Finds exactly the samples whose interpolated field value is at most the margin: the same as
 /// looking at all of them. Proof in surface_search.cpp.
 void search_field(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
-                  const SamplePose& pose, float margin, SurfaceSearch& search,
+                  const SamplePose& pose, SearchReach reach, SurfaceSearch& search,
                   Kernel kernel = Kernel::automatic);
+
+/// The same, for samples that are probably all farther away: spheres are descended into up to
+/// `wide`. When none is left then, search.clearance says how far away the samples are: while none
+/// moves farther than d, none has a value below clearance - d, as long as that is at most `wide`.
+/// When some are left it is negative. Proof in surface_search.cpp.
+/// @param wide  >= reach.margin [m]
+void search_field_widely(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                         const SamplePose& pose, SearchReach reach, float wide,
+                         SurfaceSearch& search, Kernel kernel = Kernel::automatic);
 
 /// The same among the samples of some packets of points.
 /// @param packets  ascending
 void search_packets(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
-                    const SamplePose& pose, float margin, const std::vector<std::uint32_t>& packets,
-                    SurfaceSearch& search, Kernel kernel = Kernel::automatic);
+                    const SamplePose& pose, SearchReach reach,
+                    const std::vector<std::uint32_t>& packets, SurfaceSearch& search,
+                    Kernel kernel = Kernel::automatic);
 
 /// Finds the samples whose height above a plane, normal . x + offset, is at most `margin`.
 /// @param normal  unit, in the samples' frame S; also the gradient of the hits

@@ -66,24 +66,34 @@ GOTAI_INLINE void gather_pairs(const std::int16_t* values, I8 index, F8& first, 
   second = __builtin_convertvector(both >> 16, F8);
 }
 
+GOTAI_INLINE F8 root(F8 x) { return (F8)_mm256_sqrt_ps((__m256)x); }
+
 }  // namespace gotai::collision::avx2
 
 #include "gotai/collision/surface_search_kernel.inc"
 #include "gotai/collision/triangle_search_kernel.inc"
+
+#include "gotai/collision/candidate_kernel.inc"
 
 #include "gotai/collision/reduction_kernel.inc"
 
 namespace gotai::collision {
 
 void search_field_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
-                       const SamplePose& pose, float margin, SurfaceSearch& search) {
-  avx2::search_field(samples, field, pose, margin, search);
+                       const SamplePose& pose, SearchReach reach, SurfaceSearch& search) {
+  avx2::search_field<false>(samples, field, pose, reach, reach.margin, search);
+}
+
+void search_field_widely_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                              const SamplePose& pose, SearchReach reach, float wide,
+                              SurfaceSearch& search) {
+  avx2::search_field<true>(samples, field, pose, reach, wide, search);
 }
 
 void search_packets_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
-                         const SamplePose& pose, float margin,
+                         const SamplePose& pose, SearchReach reach,
                          const std::vector<std::uint32_t>& packets, SurfaceSearch& search) {
-  avx2::search_packets(samples, field, pose, margin, packets, search);
+  avx2::search_packets(samples, field, pose, reach, packets, search);
 }
 
 void search_half_space_avx2(const voxel::SurfaceTree& samples, const std::array<float, 3>& normal,
@@ -94,6 +104,17 @@ void search_half_space_avx2(const voxel::SurfaceTree& samples, const std::array<
 std::uint32_t nearest_triangle_avx2(const voxel::TriangleTree& tree,
                                     const std::array<float, 3>& point, float limit) {
   return avx2::nearest_triangle(tree, point, limit);
+}
+
+void make_candidates_avx2(const NearSurface& near, float margin, const Closing& closing,
+                          const HitLanes* hits, std::size_t packets, CandidateLanes* out) {
+  avx2::make_candidates(near, margin, closing, hits, packets, out);
+}
+
+void look_up_distances_avx2(const voxel::DistanceField& field, const SamplePose& pose, float margin,
+                            std::span<const std::array<float, 3>> points,
+                            std::span<float> distances) {
+  avx2::look_up_distances(field, pose, margin, points.data(), points.size(), distances.data());
 }
 
 FarthestWrench keep_wrench_avx2(WrenchLanes& lanes, std::uint32_t chosen, std::uint32_t position,
