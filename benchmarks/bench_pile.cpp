@@ -3,8 +3,12 @@
 // for, the same for another engine.
 //
 //   bench_pile FOLDER MESH N [--seconds 5] [--level 6] [--contacts all|reduced] [--threads 1]
-//              [--compare ode] [--verbose]
+//              [--copies 1x1] [--compare ode] [--verbose] [--unjudged]
+//   bench_pile FOLDER MESH N --memory
 //
+// --copies 3x2 puts six copies of the pile side by side into one container; --unjudged leaves out
+// how far the meshes overlap, which takes longer than the run; --memory prints what shapes, bodies
+// and contacts take instead of running for the time.
 // FOLDER holds MESH.obj and MESH_N.csv: poses px,py,pz,qw,qx,qy,qz after a line
 // "# bodies container_inner_edge_m container_height_m: N EDGE HEIGHT".
 #include <fmt/format.h>
@@ -22,7 +26,8 @@ pile::Options parse(int argc, char** argv) {
   if (argc < 4) {
     throw InvalidArgument("arguments", fmt::format("{}", argc - 1),
                           "bench_pile FOLDER MESH N [--seconds S] [--level L] [--contacts C] "
-                          "[--threads T] [--compare ode] [--verbose]");
+                          "[--threads T] [--copies XxY] [--compare ode] [--verbose] "
+                          "[--unjudged] [--memory]");
   }
   pile::Options o;
   o.folder = argv[1];
@@ -34,6 +39,14 @@ pile::Options parse(int argc, char** argv) {
       o.verbose = true;
       continue;
     }
+    if (key == "--unjudged") {
+      o.judged = false;
+      continue;
+    }
+    if (key == "--memory") {
+      o.memory = true;
+      continue;
+    }
     if (++i == argc) throw InvalidArgument(key, "", "needs a value");
     const std::string value = argv[i];
     if (key == "--seconds") {
@@ -42,6 +55,11 @@ pile::Options parse(int argc, char** argv) {
       o.level = std::stoi(value);
     } else if (key == "--threads") {
       o.threads = std::stoi(value);
+    } else if (key == "--copies") {
+      const std::size_t by = value.find('x');
+      if (by == std::string::npos) throw InvalidArgument(key, value, "must look like 3x2");
+      o.copies_x = std::stoi(value.substr(0, by));
+      o.copies_y = std::stoi(value.substr(by + 1));
     } else if (key == "--contacts") {
       o.contacts = model::parse_contact_treatment(value);
     } else if (key == "--compare" && value == "ode") {
@@ -56,31 +74,46 @@ pile::Options parse(int argc, char** argv) {
 void print_row(const pile::Result& r) {
   const TrueOverlap& v = r.overlap;
   fmt::print(
-      "| {} | {:.2f} | {:.2f} | {:.1f} | {:.0f} | {:.4f} / {:.3f} / {:.3f} | {:+.4f} | "
+      "| {} | {:.2f} | {:.2f} | {:.1f} | {:.0f} | {:.2f} / {:.2f} | {:.4f} / {:.3f} / {:.3f} | "
+      "{:+.4f} | "
       "{:.1e} | {} | {} | {:.1e} |\n",
-      r.engine, r.ms_per_step, r.ms_last_second, r.ms_worst, r.contacts, 100.0 * v.mean,
-      100.0 * v.p99, 100.0 * v.max, 100.0 * v.gap3, r.rms_speed, r.linked, r.escaped,
-      r.energy_gain);
+      r.engine, r.ms_per_step, r.ms_last_second, r.ms_worst, r.contacts, r.us_per_contact,
+      r.us_per_contact_last_second, 100.0 * v.mean, 100.0 * v.p99, 100.0 * v.max, 100.0 * v.gap3,
+      r.rms_speed, r.linked, r.escaped, r.energy_gain);
+}
+
+void print_memory(const pile::Options& o) {
+  const pile::Memory m = pile::measure_memory(o, pile::read_pile(o));
+  fmt::print(
+      "{}, level {}: surface model {:.0f} KB (whole shape {:.0f} KB, prepared by a world {:.0f} "
+      "KB), body {:.0f} bytes, contact {:.0f} bytes\n",
+      o.mesh, o.level, m.surface_model / 1024.0, m.shape / 1024.0, m.prepared / 1024.0, m.per_body,
+      m.per_contact);
 }
 
 void run(const pile::Options& o) {
+  if (o.memory) {
+    print_memory(o);
+    return;
+  }
   if (o.compare_ode && !pile::has_ode()) {
     throw InvalidArgument("--compare", "ode", "this build has no ODE: scripts/setup --benchmarks");
   }
   const pile::Pile pile = pile::read_pile(o);
   pile::Result ours = pile::run_gotai(o, pile);
-  pile::judge(pile, ours);
+  if (o.judged) pile::judge(pile, ours);
   pile::Result theirs;
   if (o.compare_ode) {
     theirs = pile::run_ode(o, pile);
-    pile::judge(pile, theirs);
+    if (o.judged) pile::judge(pile, theirs);
   }
   fmt::print("\nPILE({}, {}), level {}, contacts {}, {:g} s\n", o.mesh, o.bodies, o.level,
              model::to_string(o.contacts), o.seconds);
   fmt::print(
-      "| engine | ms per step | last second | worst | contacts | penetration % mean / p99 / "
+      "| engine | ms per step | last second | worst | contacts | us per contact, last second | "
+      "penetration % mean / p99 / "
       "max | gap3 % | rms speed m/s | linked | escaped | energy gain |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   print_row(ours);
   if (!o.compare_ode) return;
   print_row(theirs);

@@ -12,6 +12,26 @@
 
 namespace gotai::pile {
 
+namespace {
+
+// Copies of the pile side by side, without the walls between them.
+void repeat(const Options& o, Pile& pile) {
+  const std::vector<Pose> once = pile.poses;
+  const Vec3 inner = pile.inner;
+  pile.inner.x() *= o.copies_x;
+  pile.inner.y() *= o.copies_y;
+  pile.poses.clear();
+  for (int j = 0; j < o.copies_y; ++j) {
+    for (int i = 0; i < o.copies_x; ++i) {
+      const Vec3 shift((i - 0.5 * (o.copies_x - 1)) * inner.x(),
+                       (j - 0.5 * (o.copies_y - 1)) * inner.y(), 0.0);
+      for (const Pose& X : once) pile.poses.push_back({X.p + shift, X.q});
+    }
+  }
+}
+
+}  // namespace
+
 Pile read_pile(const Options& o) {
   Pile pile;
   pile.mesh = geometry::load_mesh(o.folder + "/" + o.mesh + ".obj", {}).mesh;
@@ -34,6 +54,7 @@ Pile read_pile(const Options& o) {
     X.q.normalize();
     pile.poses.push_back(X);
   }
+  repeat(o, pile);
   return pile;
 }
 

@@ -1,6 +1,7 @@
 // The pile workload: copies of a mesh fall into an open-top container and come to rest.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,11 @@ struct Options {
   double seconds = 5.0;
   int level = 6;
   int threads = 1;
+  int copies_x = 1, copies_y = 1;  // of the pile, side by side in one container
   bool compare_ode = false;
   bool verbose = false;
+  bool memory = false;
+  bool judged = true;
   model::ContactTreatment contacts = model::ContactTreatment::reduced;
 };
 
@@ -46,6 +50,7 @@ struct Result {
   std::string engine;
   double ms_per_step = 0.0, ms_last_second = 0.0, ms_worst = 0.0;  // processor time
   double contacts = 0.0;                                           // mean per step
+  double us_per_contact = 0.0, us_per_contact_last_second = 0.0;   // processor time
   double rms_speed = 0.0;                                          // at the end [m/s]
   double energy_gain = 0.0;  // highest above the initial energy, as a fraction of it
   std::vector<Pose> poses;   // at the end, of the mesh frame
@@ -58,6 +63,22 @@ struct Result {
 Result run_gotai(const Options& options, const Pile& pile);
 Result run_ode(const Options& options, const Pile& pile);
 bool has_ode();
+
+// Bytes on the heap; contacts: of the most that there were at a time.
+struct Memory {
+  double surface_model = 0.0;  // of the shape: what collisions need
+  double shape = 0.0;          // all of it: with the mesh and the voxels
+  double prepared = 0.0;       // what a world prepares of the shape besides
+  double per_body = 0.0;       // that touches nothing
+  double per_contact = 0.0;    // in the pile
+};
+// @throws Error where the heap cannot be asked
+Memory measure_memory(const Options& options, const Pile& pile);
+
+using ShapePointer = std::shared_ptr<const voxel::Shape>;
+ShapePointer make_pile_shape(const Options& options, const Pile& pile);
+// The pile's bodies, of that shape, in its container.
+World make_world(const Options& options, const Pile& pile, const ShapePointer& shape);
 
 // Fills what follows from the final poses.
 void judge(const Pile& pile, Result& result);

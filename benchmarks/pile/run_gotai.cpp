@@ -11,30 +11,6 @@
 namespace gotai::pile {
 namespace {
 
-World make_world(const Options& o, const Pile& pile) {
-  model::Settings settings;
-  settings.collision.model = model::CollisionModel::surface;
-  settings.collision.level = o.level;
-  settings.impulse.contacts = o.contacts;
-  settings.time.step = kStep;
-  World world(settings);
-  model::Material material;
-  material.friction = kFriction;
-  material.restitution = kRestitution;
-  world.set_default_material(material);
-  const auto shape = world.add_shape(std::make_shared<const voxel::Shape>(
-      voxel::make_shape(o.mesh, pile.mesh, {.prepared_level = o.level, .surface_level = o.level})));
-  world.add_container({.name = "container", .inner = pile.inner});
-  for (const Pose& X : pile.poses) {
-    BodyDescription body;
-    body.shape = shape;
-    body.density = kDensity;
-    body.X_WM = X;
-    world.add_body(body);
-  }
-  return world;
-}
-
 double rms_speed(const model::BodyState& bodies) {
   double sum = 0.0;
   double count = 0.0;
@@ -70,9 +46,37 @@ struct Phases {
 
 }  // namespace
 
+ShapePointer make_pile_shape(const Options& o, const Pile& pile) {
+  return std::make_shared<const voxel::Shape>(
+      voxel::make_shape(o.mesh, pile.mesh, {.prepared_level = o.level, .surface_level = o.level}));
+}
+
+World make_world(const Options& o, const Pile& pile, const ShapePointer& prepared) {
+  model::Settings settings;
+  settings.collision.model = model::CollisionModel::surface;
+  settings.collision.level = o.level;
+  settings.impulse.contacts = o.contacts;
+  settings.time.step = kStep;
+  World world(settings);
+  model::Material material;
+  material.friction = kFriction;
+  material.restitution = kRestitution;
+  world.set_default_material(material);
+  const ShapeId shape = world.add_shape(prepared);
+  world.add_container({.name = "container", .inner = pile.inner});
+  for (const Pose& X : pile.poses) {
+    BodyDescription body;
+    body.shape = shape;
+    body.density = kDensity;
+    body.X_WM = X;
+    world.add_body(body);
+  }
+  return world;
+}
+
 Result run_gotai(const Options& o, const Pile& pile) {
   const ThreadLimit threads(o.threads);
-  World world = make_world(o, pile);
+  World world = make_world(o, pile, make_pile_shape(o, pile));
   Result result;
   result.engine = "gotai";
   const double initial = world.energy().total();
@@ -100,6 +104,8 @@ Result run_gotai(const Options& o, const Pile& pile) {
   result.ms_per_step = cpu_sum / std::max(1, all.steps);
   result.ms_last_second = cpu_rest / std::max(1, rest.steps);
   result.contacts = all.contacts / std::max(1, all.steps);
+  result.us_per_contact = 1e3 * cpu_sum / std::max(1.0, all.contacts);
+  result.us_per_contact_last_second = 1e3 * cpu_rest / std::max(1.0, rest.contacts);
   result.rms_speed = rms_speed(world.bodies());
   result.energy_gain = (highest - initial) / std::abs(initial);
   for (model::BodyIndex i = 0; i < world.bodies().size(); ++i) {
