@@ -12,18 +12,13 @@ bool is_near_anchor(const model::ContactAnchors::Pair& anchor, const model::Body
          reach + moved <= anchor.reach;
 }
 
-void append_anchored(const model::ContactAnchors::Pair& anchor, const model::BodyState& bodies,
-                     model::ContactSet& out) {
-  const std::size_t begin = out.size();
-  const std::size_t end = begin + anchor.contacts.size();
-  out.pairs.push_back({anchor.body_a, anchor.body_b, static_cast<std::uint32_t>(begin),
-                       static_cast<std::uint32_t>(end)});
-  out.resize(end);
+void write_anchored(const model::ContactAnchors::Pair& anchor, const model::BodyState& bodies,
+                    std::size_t begin, model::ContactSet& out) {
   const Vec3& x_A = bodies.x_W[anchor.body_a];
   const Vec3 from_b_to_a = x_A - bodies.x_W[anchor.body_b];
   const Mat3 R_WA = bodies.q_WB[anchor.body_a].toRotationMatrix();
   const Mat3 R_WB = bodies.q_WB[anchor.body_b].toRotationMatrix();
-  for (std::size_t i = begin; i < end; ++i) {
+  for (std::size_t i = begin; i < begin + anchor.contacts.size(); ++i) {
     const model::ContactAnchors::Contact& c = anchor.contacts[i - begin];
     // Both about the centre of body a: far from the world's origin the other order would cancel.
     const Vec3 on_a = R_WA * c.point_A;

@@ -20,9 +20,10 @@ inline constexpr double kAnchorTolerance = 2e-4;
 bool is_near_anchor(const model::ContactAnchors::Pair& anchor, const model::BodyState& bodies,
                     const PairMotion& motion, double reach);
 
-/// Appends an anchor's contacts at the present poses: points move with their bodies, normals turn
-/// with body b, gaps change along the normals, as solvers take them to do within a step.
-void append_anchored(const model::ContactAnchors::Pair& anchor, const model::BodyState& bodies,
-                     model::ContactSet& out);
+/// Writes an anchor's contacts at the present poses to their place [begin, ...) in a set that is
+/// large enough: points move with their bodies, normals turn with body b, gaps change along the
+/// normals, as solvers take them to do within a step.
+void write_anchored(const model::ContactAnchors::Pair& anchor, const model::BodyState& bodies,
+                    std::size_t begin, model::ContactSet& out);
 
 }  // namespace gotai::collision

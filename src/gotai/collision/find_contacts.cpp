@@ -4,6 +4,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -32,6 +33,17 @@ struct Chunk {
 
 // Many more tasks than threads, so that they end together; few enough that joining is cheap.
 constexpr std::size_t kChunks = 256;
+
+// What many pairs keep is read once per step, from all over the memory: asked for some pairs ahead
+// it is there in time.
+constexpr std::size_t kAhead = 4;
+
+template <typename T>
+void prefetch(const T* from, std::size_t count) {
+  constexpr std::size_t kLine = 64;
+  const auto* bytes = reinterpret_cast<const std::byte*>(from);
+  for (std::size_t i = 0; i < count * sizeof(T); i += kLine) __builtin_prefetch(bytes + i);
+}
 
 void check_levels(const model::BodyState& bodies, Shapes shapes, int level) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -92,6 +104,25 @@ void join(std::span<Chunk> chunks, model::ContactSet& out) {
                [&](std::size_t c) { place(chunks[c].contacts, chunks[c].begin, out); });
 }
 
+/// The contacts of all anchors at the present poses.
+void take_from_anchors(const model::BodyState& bodies, const model::ContactAnchors& anchors,
+                       model::ContactSet& out) {
+  constexpr std::size_t kPairsPerTask = 64;
+  out.pairs.clear();
+  std::uint32_t total = 0;
+  for (const model::ContactAnchors::Pair& a : anchors.pairs) {
+    const std::uint32_t begin = total;
+    total += static_cast<std::uint32_t>(a.contacts.size());
+    out.pairs.push_back({a.body_a, a.body_b, begin, total});
+  }
+  out.resize(total);
+  parallel_for(anchors.pairs.size(), kPairsPerTask, [&](std::size_t p) {
+    const std::size_t next = std::min(p + kAhead, anchors.pairs.size() - 1);
+    prefetch(anchors.pairs[next].contacts.data(), anchors.pairs[next].contacts.size());
+    write_anchored(anchors.pairs[p], bodies, out.pairs[p].begin, out);
+  });
+}
+
 /// The broad phase pairs bodies by the world's fastest. Drops pairs of shapes whose spheres are
 /// farther apart than the two bodies can come in the step.
 void drop_distant_pairs(const model::BodyState& bodies, double dt, double margin,
@@ -117,24 +148,26 @@ struct CollisionCache::Storage {
   std::vector<std::unique_ptr<const ExactSurface>> exact;
   std::vector<bool> has_exact;  // exact is what the shape allows
   std::vector<Chunk> chunks;
-  // What the last search of each pair leaves for the next: as `candidates`, of this and the last
-  // step.
-  struct Remembered {
+  // What the last search of each pair leaves for the next, one per candidate of this and the last
+  // step; `near` is a place in the pool, those without a pair are free.
+  struct Known {
     BodyPair pair;
     std::array<std::uint32_t, 2> shape{};  // of the two bodies, when it was learnt
-    NearPair near;
-    model::ContactAnchors::Pair anchor;  // while the search goes on; otherwise the caller has it
+    std::uint32_t near = 0;
   };
-  std::vector<Remembered> remembered;
-  std::vector<Remembered> before;
-  std::size_t before_count =
-      0;  // of `before` when it is next swapped; entries are kept for storage
+  std::vector<Known> known;
+  std::vector<Known> before;
+  std::vector<NearPair> pool;
+  std::vector<std::uint32_t> free;
+  // One per candidate while the search goes on; otherwise the caller has them.
+  std::vector<model::ContactAnchors::Pair> anchor;
   tbb::enumerable_thread_specific<SphereScratch> scratch;
   tbb::enumerable_thread_specific<SurfaceScratch> surface_scratch;
 
   void refresh_shapes(Shapes current, bool with_sphere_trees, bool with_exact_surfaces);
   void refresh_radii(const model::BodyState& bodies, const model::CollisionSettings& settings);
   void carry_over_memories(const model::BodyState& bodies);
+  void forget_pairs();
   void take_anchors(model::ContactAnchors& anchors);
   void give_anchors(model::ContactAnchors& anchors);
 };
@@ -142,30 +175,47 @@ struct CollisionCache::Storage {
 // What is known of pairs stays with those that are still candidates and have the same shapes.
 // Whose bodies those are does not matter: what is known holds for shapes and their relative pose.
 void CollisionCache::Storage::carry_over_memories(const model::BodyState& bodies) {
-  std::swap(remembered, before);
-  if (remembered.size() < candidates.size()) remembered.resize(candidates.size());
+  std::swap(known, before);
+  known.resize(candidates.size());
   std::size_t old = 0;
+  const auto drop_while = [&](const auto& is_gone) {
+    while (old < before.size() && is_gone(before[old])) free.push_back(before[old++].near);
+  };
   const auto key = [](const BodyPair& pair) { return std::pair(pair.body_a, pair.body_b); };
   for (std::size_t p = 0; p < candidates.size(); ++p) {
-    Remembered& now = remembered[p];
+    Known& now = known[p];
     now.pair = candidates[p];
-    now.near.forget();
-    const std::array<std::uint32_t, 2> shape = {bodies.shape[now.pair.body_a],
-                                                bodies.shape[now.pair.body_b]};
-    now.shape = shape;
-    while (old < before_count && key(before[old].pair) < key(now.pair)) ++old;
-    if (old == before_count || before[old].pair != now.pair || before[old].shape != shape) continue;
-    std::swap(now.near, before[old].near);
+    now.shape = {bodies.shape[now.pair.body_a], bodies.shape[now.pair.body_b]};
+    drop_while([&](const Known& k) {
+      return key(k.pair) < key(now.pair) || (k.pair == now.pair && k.shape != now.shape);
+    });
+    if (old < before.size() && before[old].pair == now.pair) {
+      now.near = before[old++].near;
+    } else if (free.empty()) {
+      now.near = static_cast<std::uint32_t>(pool.size());
+      pool.emplace_back();
+    } else {
+      now.near = free.back();
+      free.pop_back();
+      pool[now.near].forget();
+    }
   }
-  before_count = candidates.size();
+  drop_while([](const Known&) { return true; });
+}
+
+void CollisionCache::Storage::forget_pairs() {
+  known.clear();
+  free.resize(pool.size());
+  std::iota(free.begin(), free.end(), 0U);
 }
 
 // Anchors of pairs that are no candidates any more are dropped.
 void CollisionCache::Storage::take_anchors(model::ContactAnchors& anchors) {
+  if (anchor.size() < candidates.size()) anchor.resize(candidates.size());
   std::size_t old = 0;
   for (std::size_t p = 0; p < candidates.size(); ++p) {
     const auto key = std::pair(candidates[p].body_a, candidates[p].body_b);
-    model::ContactAnchors::Pair& now = remembered[p].anchor;
+    model::ContactAnchors::Pair& now = anchor[p];
     now.contacts.clear();
     while (old < anchors.pairs.size() &&
            std::pair(anchors.pairs[old].body_a, anchors.pairs[old].body_b) < key) {
@@ -183,9 +233,9 @@ void CollisionCache::Storage::take_anchors(model::ContactAnchors& anchors) {
 void CollisionCache::Storage::give_anchors(model::ContactAnchors& anchors) {
   std::size_t count = 0;
   for (std::size_t p = 0; p < candidates.size(); ++p) {
-    if (remembered[p].anchor.contacts.empty()) continue;
+    if (anchor[p].contacts.empty()) continue;
     if (count == anchors.pairs.size()) anchors.pairs.emplace_back();
-    std::swap(remembered[p].anchor, anchors.pairs[count++]);
+    std::swap(anchor[p], anchors.pairs[count++]);
   }
   anchors.pairs.resize(count);
 }
@@ -199,7 +249,7 @@ void CollisionCache::Storage::refresh_shapes(Shapes current, bool with_sphere_tr
   for (std::size_t s = 0; s < current.size(); ++s) {
     const voxel::Shape& shape = *current[s];
     if (shapes[s] != current[s]) {
-      before_count = 0;
+      forget_pairs();
       trees[s] = {};
       has_exact[s] = false;
     }
@@ -272,10 +322,15 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
       scratch.search.tests = 0;
       scratch.reduction_error = 0.0;
       for (std::size_t p = c * size; p < end; ++p) {
-        CollisionCache::Storage::Remembered& known = storage.remembered[p];
-        append_surface_contacts(bodies, storage.candidates[p], shapes, storage.exact, margin,
-                                options, scratch, chunk.contacts, &known.near,
-                                anchored ? &known.anchor : nullptr);
+        prefetch(&storage.pool[storage.known[std::min(p + kAhead, pairs - 1)].near], 1);
+        NearPair& near = storage.pool[storage.known[p].near];
+        if (anchored) {
+          refresh_anchor(bodies, shapes, storage.exact, margin, options, scratch, &near,
+                         storage.anchor[p]);
+        } else {
+          append_surface_contacts(bodies, storage.candidates[p], shapes, storage.exact, margin,
+                                  options, scratch, chunk.contacts, &near);
+        }
       }
       chunk.tests[0] = scratch.search.tests;
       chunk.reduction_error = scratch.reduction_error;
@@ -288,11 +343,14 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
     }
   });
 
-  if (anchored) storage.give_anchors(*options.anchors);
-
   SearchStatistics statistics;
   statistics.candidate_pairs = static_cast<std::uint32_t>(pairs);
-  join(std::span(storage.chunks).first(count), out);
+  if (anchored) {
+    storage.give_anchors(*options.anchors);
+    take_from_anchors(bodies, *options.anchors, out);
+  } else {
+    join(std::span(storage.chunks).first(count), out);
+  }
   for (std::size_t c = 0; c < count; ++c) {
     statistics.reduction_error =
         std::max(statistics.reduction_error, storage.chunks[c].reduction_error);

@@ -166,6 +166,18 @@ void find_on_faces(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
   }
 }
 
+// The candidates of a pair at the present poses, reduced if asked for.
+void find_candidates(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
+                     ExactSurfaces exact, double reach, const PairMotion& motion,
+                     const SearchOptions& options, SurfaceScratch& scratch, NearPair* near) {
+  scratch.candidates.clear();
+  if (bodies.geometry[pair.body_b] == model::Geometry::shape) {
+    find_between_shapes(bodies, pair, shapes, exact, reach, motion, options, scratch, near);
+  } else {
+    find_on_faces(bodies, pair, shapes, exact, reach, motion, options, scratch);
+  }
+}
+
 // Anchors the kept candidates at the present poses.
 void anchor_kept(const BodyState& bodies, double reach, const SurfaceScratch& scratch,
                  model::ContactAnchors::Pair& anchor) {
@@ -184,30 +196,11 @@ void anchor_kept(const BodyState& bodies, double reach, const SurfaceScratch& sc
 
 void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
                              ExactSurfaces exact, double margin, const SearchOptions& options,
-                             SurfaceScratch& scratch, model::ContactSet& out, NearPair* near,
-                             model::ContactAnchors::Pair* anchor) {
+                             SurfaceScratch& scratch, model::ContactSet& out, NearPair* near) {
   const PairMotion motion(bodies, pair, options.dt);
-  double reach = motion.reach(margin);
-  if (anchor != nullptr) {
-    if (!anchor->contacts.empty() && is_near_anchor(*anchor, bodies, motion, reach)) {
-      append_anchored(*anchor, bodies, out);
-      return;
-    }
-    anchor->contacts.clear();
-    reach += kAnchorTolerance * motion.size();
-  }
-  scratch.candidates.clear();
-  if (bodies.geometry[pair.body_b] == model::Geometry::shape) {
-    find_between_shapes(bodies, pair, shapes, exact, reach, motion, options, scratch, near);
-  } else {
-    find_on_faces(bodies, pair, shapes, exact, reach, motion, options, scratch);
-  }
+  find_candidates(bodies, pair, shapes, exact, motion.reach(margin), motion, options, scratch,
+                  near);
   if (scratch.candidates.empty()) return;
-  if (anchor != nullptr) {
-    anchor_kept(bodies, reach, scratch, *anchor);
-    append_anchored(*anchor, bodies, out);
-    return;
-  }
   const auto begin = static_cast<std::uint32_t>(out.size());
   out.pairs.push_back({pair.body_a, pair.body_b, begin, begin});
   const Mat3 R_WA = bodies.q_WB[pair.body_a].toRotationMatrix();
@@ -219,6 +212,19 @@ void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shap
   } else {
     for (const ContactCandidate& c : scratch.candidates) emit(bodies, pair, c, R_WA, R_WB, out);
   }
+}
+
+void refresh_anchor(const BodyState& bodies, Shapes shapes, ExactSurfaces exact, double margin,
+                    const SearchOptions& options, SurfaceScratch& scratch, NearPair* near,
+                    model::ContactAnchors::Pair& anchor) {
+  const BodyPair pair{anchor.body_a, anchor.body_b};
+  const PairMotion motion(bodies, pair, options.dt);
+  const double needed = motion.reach(margin);
+  if (!anchor.contacts.empty() && is_near_anchor(anchor, bodies, motion, needed)) return;
+  anchor.contacts.clear();
+  const double reach = needed + kAnchorTolerance * motion.size();
+  find_candidates(bodies, pair, shapes, exact, reach, motion, options, scratch, near);
+  if (!scratch.candidates.empty()) anchor_kept(bodies, reach, scratch, anchor);
 }
 
 }  // namespace gotai::collision

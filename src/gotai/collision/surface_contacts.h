@@ -21,15 +21,16 @@ namespace gotai::collision {
 
 /// What the last search of a pair leaves for the next.
 struct NearPair {
-  /// The samples of body a in the field of body b, and the other way round.
-  std::array<NearSamples, 2> way;
-  bool apart = false;   ///< neither had hits
-  bool distant = true;  ///< the next search is probably without hits, and not near them
+  // First what is asked of every pair in every step.
   /// While no sample has moved farther than d since, no gap is below clearance - d, as long as that
   /// is at most `clear_up_to` [m]; < 0: not known.
   double clearance = -1.0;
   double clear_up_to = 0.0;
-  Pose X_BA;  ///< of body a against body b when `apart` or `clearance` were found
+  bool apart = false;   ///< neither way had hits
+  bool distant = true;  ///< the next search is probably without hits, and not near them
+  Pose X_BA;            ///< of body a against body b when `apart` or `clearance` were found
+  /// The samples of body a in the field of body b, and the other way round.
+  std::array<NearSamples, 2> way;
 
   void forget() {
     for (NearSamples& near : way) near.forget();
@@ -50,14 +51,18 @@ struct NearPair {
 /// @param margin  [m], >= 0
 /// @param near    of the pair's last search with these shapes, or empty: changes no bit of the
 ///                result. Null: nothing is kept
-/// @param anchor  of the pair, for `reduced` in a step: while the pair is near it, its contacts are
-///                taken from there, otherwise it is set anew; without contacts: nothing is known.
-///                Null: contacts are those of the present poses
 void append_surface_contacts(const model::BodyState& bodies, const BodyPair& pair,
                              std::span<const std::shared_ptr<const voxel::Shape>> shapes,
                              ExactSurfaces exact, double margin, const SearchOptions& options,
                              SurfaceScratch& scratch, model::ContactSet& out,
-                             NearPair* near = nullptr,
-                             model::ContactAnchors::Pair* anchor = nullptr);
+                             NearPair* near = nullptr);
+
+/// The same for `reduced` in a step, with contacts that stay while the pair hardly moves: while it
+/// is near its anchor nothing is searched, otherwise the anchor is set anew.
+/// @param anchor  of the pair; without contacts: nothing is known, or the bodies are apart
+void refresh_anchor(const model::BodyState& bodies,
+                    std::span<const std::shared_ptr<const voxel::Shape>> shapes,
+                    ExactSurfaces exact, double margin, const SearchOptions& options,
+                    SurfaceScratch& scratch, NearPair* near, model::ContactAnchors::Pair& anchor);
 
 }  // namespace gotai::collision
