@@ -32,7 +32,7 @@ ShapePointer generate_shape(const std::string& name) {
   options.shape = name;
   options.size = 1.0;
   return std::make_shared<const voxel::Shape>(
-      voxel::make_shape(name, geometry::generate(options), {}));
+      voxel::make_shape(name, geometry::generate(options), {.surface_level = 0}));
 }
 
 /// Random directions and rotations; the distance is that at which the spheres of the prepared level
@@ -66,8 +66,9 @@ TouchingPairs generate_pairs(const std::string& name) {
 /// The poses of bench/pairs whose kind is "touch".
 TouchingPairs read_pairs(const std::filesystem::path& folder, const std::string& name) {
   geometry::Mesh mesh = geometry::load_mesh(folder / (name + ".obj")).mesh;
-  TouchingPairs result{
-      std::make_shared<const voxel::Shape>(voxel::make_shape(name, std::move(mesh), {})), {}};
+  TouchingPairs result{std::make_shared<const voxel::Shape>(
+                           voxel::make_shape(name, std::move(mesh), {.surface_level = 0})),
+                       {}};
   std::ifstream in(folder / fmt::format("{0}_{0}.csv", name));
   std::string line;
   while (std::getline(in, line)) {
@@ -158,8 +159,7 @@ BENCHMARK(broad_phase_mixed)->Arg(1000)->Arg(3000)->Arg(10000)->Unit(benchmark::
 void pile(benchmark::State& state, const ShapePointer& shape, int level) {
   const std::vector<ShapePointer> shapes{shape};
   const model::BodyState bodies = make_pile(500, 0.9, 0.0);
-  model::CollisionSettings settings;
-  settings.level = level;
+  model::CollisionSettings settings{model::CollisionModel::spheres, level};
   collision::CollisionCache cache;
   model::ContactSet contacts;
   collision::SearchStatistics statistics;

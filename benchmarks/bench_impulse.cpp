@@ -32,13 +32,14 @@ using ShapePointer = std::shared_ptr<const voxel::Shape>;
 ShapePointer hexapod(int level) {
   geometry::GeneratorOptions options;
   options.shape = "hexapod";
-  return std::make_shared<const voxel::Shape>(
-      voxel::make_shape("hexapod", geometry::generate(options), {.prepared_level = level}));
+  return std::make_shared<const voxel::Shape>(voxel::make_shape(
+      "hexapod", geometry::generate(options), {.prepared_level = level, .surface_level = 0}));
 }
 
 model::Settings settings_of(int level, double dt) {
   model::Settings settings;
   settings.gravity = Vec3(0, 0, -9.8);
+  settings.collision.model = model::CollisionModel::spheres;
   settings.collision.level = level;
   settings.time.step = dt;
   return settings;

@@ -1,9 +1,9 @@
 // PILE(mesh, N): copies of a mesh fall into a container and come to rest. Prints a table of time
 // per step (processor) and of how far the true meshes overlap at the end, and beside it, if asked
-// for, the same for another engine.
+// for, the same for other engines (--compare may be given twice).
 //
 //   bench_pile FOLDER MESH N [--seconds 5] [--level 6] [--contacts all|reduced] [--threads 1]
-//              [--copies 1x1] [--compare ode] [--verbose] [--unjudged]
+//              [--copies 1x1] [--compare ode|bullet] [--verbose] [--unjudged]
 //   bench_pile FOLDER MESH N --memory
 //
 // --copies 3x2 puts six copies of the pile side by side into one container; --unjudged leaves out
@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <vector>
 
 #include "gotai/core/error.h"
 #include "pile/pile.h"
@@ -26,7 +27,7 @@ pile::Options parse(int argc, char** argv) {
   if (argc < 4) {
     throw InvalidArgument("arguments", fmt::format("{}", argc - 1),
                           "bench_pile FOLDER MESH N [--seconds S] [--level L] [--contacts C] "
-                          "[--threads T] [--copies XxY] [--compare ode] [--verbose] "
+                          "[--threads T] [--copies XxY] [--compare ode|bullet] [--verbose] "
                           "[--unjudged] [--memory]");
   }
   pile::Options o;
@@ -62,8 +63,9 @@ pile::Options parse(int argc, char** argv) {
       o.copies_y = std::stoi(value.substr(by + 1));
     } else if (key == "--contacts") {
       o.contacts = model::parse_contact_treatment(value);
-    } else if (key == "--compare" && value == "ode") {
-      o.compare_ode = true;
+    } else if (key == "--compare") {
+      pile::require_rival(value);
+      o.compare.push_back(value);
     } else {
       throw InvalidArgument(key, value, "is not an option of bench_pile");
     }
@@ -96,16 +98,13 @@ void run(const pile::Options& o) {
     print_memory(o);
     return;
   }
-  if (o.compare_ode && !pile::has_ode()) {
-    throw InvalidArgument("--compare", "ode", "this build has no ODE: scripts/setup --benchmarks");
-  }
   const pile::Pile pile = pile::read_pile(o);
   pile::Result ours = pile::run_gotai(o, pile);
   if (o.judged) pile::judge(pile, ours);
-  pile::Result theirs;
-  if (o.compare_ode) {
-    theirs = pile::run_ode(o, pile);
-    if (o.judged) pile::judge(pile, theirs);
+  std::vector<pile::Result> others;
+  for (const std::string& name : o.compare) {
+    others.push_back(pile::run_rival(name, o, pile));
+    if (o.judged) pile::judge(pile, others.back());
   }
   fmt::print("\nPILE({}, {}), level {}, contacts {}, {:g} s\n", o.mesh, o.bodies, o.level,
              model::to_string(o.contacts), o.seconds);
@@ -115,13 +114,14 @@ void run(const pile::Options& o) {
       "max | gap3 % | rms speed m/s | linked | escaped | energy gain |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   print_row(ours);
-  if (!o.compare_ode) return;
-  print_row(theirs);
-  fmt::print(
-      "gotai is {:.1f} times as fast over the run, {:.1f} times in the last second, and "
-      "overlaps {:.1f} times less in the mean\n",
-      theirs.ms_per_step / ours.ms_per_step, theirs.ms_last_second / ours.ms_last_second,
-      theirs.overlap.mean / ours.overlap.mean);
+  for (const pile::Result& theirs : others) print_row(theirs);
+  for (const pile::Result& theirs : others) {
+    fmt::print(
+        "gotai is {:.1f} times as fast as {} over the run, {:.1f} times in the last second, and "
+        "overlaps {:.1f} times less in the mean\n",
+        theirs.ms_per_step / ours.ms_per_step, theirs.engine,
+        theirs.ms_last_second / ours.ms_last_second, theirs.overlap.mean / ours.overlap.mean);
+  }
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ void judge(const Pile& pile, Result& result) {
   // A world only to hold the poses; its collision model is not asked.
   World world{model::Settings{}};
   const auto shape = world.add_shape(std::make_shared<const voxel::Shape>(
-      voxel::make_shape("judge", pile.mesh, {.prepared_level = 6})));
+      voxel::make_shape("judge", pile.mesh, {.prepared_level = 6, .surface_level = 0})));
   world.add_container({.name = "container", .inner = pile.inner});
   for (const Pose& X : result.poses) {
     BodyDescription body;

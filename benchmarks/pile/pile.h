@@ -19,8 +19,8 @@ struct Options {
   double seconds = 5.0;
   int level = 6;
   int threads = 1;
-  int copies_x = 1, copies_y = 1;  // of the pile, side by side in one container
-  bool compare_ode = false;
+  int copies_x = 1, copies_y = 1;    // of the pile, side by side in one container
+  std::vector<std::string> compare;  // other engines
   bool verbose = false;
   bool memory = false;
   bool judged = true;
@@ -61,8 +61,17 @@ struct Result {
 };
 
 Result run_gotai(const Options& options, const Pile& pile);
+
+// Other engines by name; see rivals().
+Result run_rival(const std::string& name, const Options& options, const Pile& pile);
+const std::vector<std::string>& rivals();
+/// @throws InvalidArgument for a name that is unknown or not in this build
+void require_rival(const std::string& name);
+
 Result run_ode(const Options& options, const Pile& pile);
 bool has_ode();
+Result run_bullet(const Options& options, const Pile& pile);
+bool has_bullet();
 
 // Bytes on the heap; contacts: of the most that there were at a time.
 struct Memory {

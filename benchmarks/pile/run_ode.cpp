@@ -1,15 +1,11 @@
 // The same pile with the Open Dynamics Engine's triangle meshes.
 #include "gotai/core/error.h"
-#include "pile/pile.h"
+#include "pile/rival.h"
 
 #ifdef GOTAI_HAS_ODE
-#include <fmt/format.h>
 #include <ode/ode.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdio>
 
 #include "gotai/geometry/mass_properties.h"
 
@@ -44,21 +40,14 @@ void collide(void* data, dGeomID a, dGeomID b) {
   simulation.contacts += count;
 }
 
-double energy(const std::vector<dBodyID>& bodies, const dMass& mass) {
-  double sum = 0.0;
+std::vector<Motion> motions_of(const std::vector<dBodyID>& bodies) {
+  std::vector<Motion> motions;
   for (const dBodyID body : bodies) {
-    const Eigen::Map<const Vec3> v(dBodyGetLinearVel(body));
-    const Eigen::Map<const Vec3> w(dBodyGetAngularVel(body));
-    dVector3 w_B;
-    dBodyVectorFromWorld(body, w.x(), w.y(), w.z(), w_B);
-    double rotation = 0.0;
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) rotation += w_B[r] * mass.I[4 * r + c] * w_B[c];
-    // The correction of a semi-implicit step, as in World::energy().
-    sum += 0.5 * mass.mass * v.squaredNorm() + 0.5 * rotation +
-           mass.mass * 9.81 * dBodyGetPosition(body)[2] - 0.5 * kStep * mass.mass * 9.81 * v.z();
+    const dReal* q = dBodyGetQuaternion(body);
+    motions.push_back({Vec3(dBodyGetPosition(body)), Vec3(dBodyGetLinearVel(body)),
+                       Vec3(dBodyGetAngularVel(body)), Quat(q[0], q[1], q[2], q[3])});
   }
-  return sum;
+  return motions;
 }
 
 }  // namespace
@@ -107,39 +96,16 @@ Result run_ode(const Options& o, const Pile& pile) {
   dCreatePlane(simulation.space, 0, 1, 0, -0.5 * pile.inner.y());
   dCreatePlane(simulation.space, 0, -1, 0, -0.5 * pile.inner.y());
 
-  Result result;
-  result.engine = "ODE, triangle meshes";
-  const double initial = energy(bodies, mass);
-  double highest = initial;
-  const int steps = static_cast<int>(std::lround(o.seconds / kStep));
-  const int rest_steps = std::min(steps, static_cast<int>(std::lround(1.0 / kStep)));
-  for (int s = 0; s < steps; ++s) {
-    const double start = cpu_seconds();
+  const auto step = [&simulation] {
     dSpaceCollide(simulation.space, &simulation, &collide);
     dWorldQuickStep(simulation.world, kStep);
     dJointGroupEmpty(simulation.joints);
-    const double ms = 1e3 * (cpu_seconds() - start);
-    result.ms_per_step += ms / steps;
-    if (s >= steps - rest_steps) result.ms_last_second += ms / rest_steps;
-    result.ms_worst = std::max(result.ms_worst, ms);
-    highest = std::max(highest, energy(bodies, mass));
-    if (o.verbose && (s + 1) % 30 == 0) {
-      fmt::print("  t {:5.2f} s  {:7.2f} ms\n", (s + 1) * kStep, ms);
-      std::fflush(stdout);
-    }
-  }
-  result.contacts = simulation.contacts / std::max(1, steps);
-  result.energy_gain = (highest - initial) / std::abs(initial);
-  double squares = 0.0;
-  for (const dBodyID body : bodies) {
-    const dReal* x = dBodyGetPosition(body);
-    const dReal* q = dBodyGetQuaternion(body);
-    Pose X{Vec3(x[0], x[1], x[2]), Quat(q[0], q[1], q[2], q[3])};
-    X.p -= X.q * centre;
-    result.poses.push_back(X);
-    squares += Eigen::Map<const Vec3>(dBodyGetLinearVel(body)).squaredNorm();
-  }
-  result.rms_speed = std::sqrt(squares / std::max<double>(1.0, static_cast<double>(bodies.size())));
+  };
+  Result result = simulate(o, pile,
+                           {.name = "ODE, triangle meshes",
+                            .step = step,
+                            .motions = [&bodies] { return motions_of(bodies); },
+                            .contacts = &simulation.contacts});
   dJointGroupDestroy(simulation.joints);
   dSpaceDestroy(simulation.space);
   dWorldDestroy(simulation.world);
@@ -153,7 +119,7 @@ Result run_ode(const Options& o, const Pile& pile) {
 namespace gotai::pile {
 bool has_ode() { return false; }
 Result run_ode(const Options&, const Pile&) {
-  throw InvalidArgument("--compare", "ode", "needs libode-dev: scripts/setup --benchmarks");
+  throw InvalidArgument("--compare", "ode", "is not in this build");
 }
 }  // namespace gotai::pile
 #endif
