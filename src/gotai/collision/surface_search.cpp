@@ -6,6 +6,7 @@
 #include "gotai/collision/exact_surface.h"
 #include "gotai/collision/lanes.h"
 #include "gotai/collision/surface_search_bounds.h"
+#include "gotai/core/instruction_set.h"
 
 // Why pruning loses nothing. Let f be the value that a sample gets: I(x), the interpolation of the
 // fine lattice (spacing c), where a brick holds it, else I_c(x) of the coarse lattice (spacing 4c),
@@ -88,7 +89,7 @@ namespace gotai::collision {
 namespace {
 
 bool use_avx2(Kernel kernel) {
-  static const bool available = is_available(Kernel::avx2);
+  static const bool available = is_available(Kernel::avx2) && !portable_instructions_wanted();
   return kernel == Kernel::avx2 || (kernel == Kernel::automatic && available);
 }
 
