@@ -6,6 +6,8 @@ target_compile_options(gotai_options INTERFACE
   $<BUILD_INTERFACE:-Wall;-Wextra;-Wconversion;-Wshadow>
   # GCC 12 warns of std::string's own code (GCC bug 105329).
   $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-restrict>>
+  # In large units GCC takes the local types of a source for those of a header.
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CMAKE_UNITY_BUILD}>>:$<BUILD_INTERFACE:-Wno-subobject-linkage>>
   $<BUILD_INTERFACE:-ffp-contract=off>
   $<$<BOOL:${GOTAI_WARNINGS_AS_ERRORS}>:$<BUILD_INTERFACE:-Werror>>)
 if(GOTAI_SANITIZE)
