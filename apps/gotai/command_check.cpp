@@ -108,7 +108,7 @@ std::string to_text(const OpenedScene& scene, const Findings& findings) {
       "methods",
       fmt::format("{} level {}, {} ({} contacts), {}", model::to_string(settings.collision.model),
                   settings.collision.level, model::to_string(settings.impulse.method),
-                  model::to_string(settings.impulse.contacts),
+                  model::to_string(model::contact_treatment(settings)),
                   model::to_string(settings.time.integrator)));
   report.row("time step", fmt::format("{} ({})", format_duration(findings.first_step),
                                       settings.time.step == 0.0

@@ -64,6 +64,7 @@ int make_shape(ShapeOptions options) {
 void add_shape_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<ShapeOptions>();
   options->shape.prepared_level = voxel::ShapeOptions{}.prepared_level;
+  options->shape.surface_level = voxel::ShapeOptions{}.surface_level;
   scene::ShapeDescription& shape = options->shape;
   CLI::App* command = app.add_subcommand("shape", "Prepare a shape from a mesh and show it");
   command->footer(kShapeFooter);
@@ -80,6 +81,16 @@ void add_shape_command(CLI::App& app, Action& action) {
                    "Finest level M: 2^(M-1) voxels along the longest side")
       ->check(CLI::Range(1, voxel::kMaxLevel))
       ->capture_default_str();
+  command
+      ->add_option("--surface-level", shape.surface_level,
+                   "Level at which the true surface is sampled, 3..8; 0: voxels alone")
+      ->check(CLI::Range(voxel::kMinSurfaceLevel, voxel::kMaxSurfaceLevel) | CLI::IsMember({0}))
+      ->capture_default_str();
+  command
+      ->add_option("--accuracy", shape.accuracy,
+                   "Wish, a fraction of the largest extent (0.001): the surface level rises until "
+                   "walls are a voxel thick and the surface is off by less")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--unit", shape.load.unit, "Length unit of the file")
       ->check(CLI::IsMember(geometry::length_unit_names()))
       ->capture_default_str();

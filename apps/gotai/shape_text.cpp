@@ -86,6 +86,12 @@ nlohmann::ordered_json to_json(const voxel::Shape& shape) {
                               {"voxel_edge", shape.pyramid.grid.voxel_edge(h)},
                               {"voxels", shape.pyramid.level(h).size()}});
   }
+  if (!shape.surface.empty()) {
+    json["surface"] = {{"level", shape.surface.level},
+                       {"samples", shape.surface.tree.normal.size()},
+                       {"spacing", shape.surface.spacing},
+                       {"bytes", shape.surface.bytes()}};
+  }
   return json;
 }
 
@@ -121,6 +127,12 @@ void describe(const voxel::Shape& shape, Report& report) {
              fmt::format("{:.5g} {:.5g} {:.5g} kg m^2 at 1000 kg/m^3", 1e3 * axes.moments.x(),
                          1e3 * axes.moments.y(), 1e3 * axes.moments.z()));
   for (const std::string& warning : shape.warnings) report.row("warning", warning);
+  if (!shape.surface.empty()) {
+    report.row("surface", fmt::format("level {}: {} samples {} apart, {} KB", shape.surface.level,
+                                      format_count(shape.surface.tree.normal.size()),
+                                      format_length(shape.surface.spacing),
+                                      format_count(shape.surface.bytes() / 1000)));
+  }
   report.row("content", shape.content.hex());
   for (int h = 1; h <= shape.pyramid.max_level(); ++h) {
     report.row(

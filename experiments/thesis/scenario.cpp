@@ -72,7 +72,7 @@ std::shared_ptr<const voxel::Shape> prepare(const std::string& name, geometry::M
                                             int finest, const Setup& setup) {
   voxel::ShapeOptions how;
   how.prepared_level = finest;
-  if (setup.model == "surface") how.surface_level = setup.level;
+  how.surface_level = setup.model == "surface" ? setup.level : 0;
   static std::mutex mutex;
   static std::map<std::string, std::shared_ptr<const voxel::Shape>> known;
   const std::string key = voxel::content_hash(mesh, how).hex();

@@ -6,39 +6,26 @@
 
 #include "gotai/core/parallel.h"
 #include "gotai/core/random.h"
-#include "gotai/geometry/generate.h"
-#include "gotai/world/world.h"
+#include "support/worlds.h"
 
 namespace gotai {
 namespace {
 
 constexpr int kBitsLevel = 5;
 
-std::shared_ptr<const voxel::Shape> shape_of(const std::string& name) {
-  return std::make_shared<const voxel::Shape>(
-      voxel::make_shape(name, geometry::generate({.shape = name}),
-                        {.prepared_level = kBitsLevel, .surface_level = kBitsLevel}));
-}
-
 // Shapes are made once: they are the same for all worlds.
-const std::vector<std::shared_ptr<const voxel::Shape>>& shapes() {
-  static const std::vector<std::shared_ptr<const voxel::Shape>> all = {
-      shape_of("hexapod"), shape_of("torus"), shape_of("rock"), shape_of("cube")};
+const std::vector<test::ShapePointer>& shapes() {
+  static const std::vector<test::ShapePointer> all = {
+      test::surface_shape({.shape = "hexapod"}, kBitsLevel),
+      test::surface_shape({.shape = "torus"}, kBitsLevel),
+      test::surface_shape({.shape = "rock"}, kBitsLevel),
+      test::surface_shape({.shape = "cube"}, kBitsLevel)};
   return all;
 }
 
 // Sixteen bodies over an open box.
 World small_pile() {
-  model::Settings settings;
-  settings.collision.model = model::CollisionModel::surface;
-  settings.collision.level = kBitsLevel;
-  settings.impulse.contacts = model::ContactTreatment::reduced;
-  settings.time.step = 1.0 / 60.0;
-  World world(settings);
-  model::Material material;
-  material.friction = 0.5;
-  material.restitution = 0.2;
-  world.set_default_material(material);
+  World world = test::surface_world(kBitsLevel, test::surface_material(0.2, 0.5));
   for (const auto& shape : shapes()) world.add_shape(shape);
   world.add_container({.name = "container", .inner = Vec3(3.6, 3.6, 8.0)});
   Random random(11);

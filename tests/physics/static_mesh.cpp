@@ -4,8 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "gotai/geometry/generate.h"
-#include "gotai/world/world.h"
+#include "support/worlds.h"
 
 namespace gotai {
 namespace {
@@ -13,24 +12,10 @@ namespace {
 constexpr int kMeshLevel = 6;
 
 ShapeId add(World& world, const std::string& name) {
-  return world.add_shape(std::make_shared<const voxel::Shape>(
-      voxel::make_shape(name, geometry::generate({.shape = name}),
-                        {.prepared_level = kMeshLevel, .surface_level = kMeshLevel})));
+  return world.add_shape(test::surface_shape({.shape = name}, kMeshLevel));
 }
 
-World empty_world() {
-  model::Settings settings;
-  settings.collision.model = model::CollisionModel::surface;
-  settings.collision.level = kMeshLevel;
-  settings.impulse.contacts = model::ContactTreatment::reduced;
-  settings.time.step = 1.0 / 60.0;
-  World world(settings);
-  model::Material material;
-  material.friction = 0.5;
-  material.restitution = 0.0;
-  world.set_default_material(material);
-  return world;
-}
+World empty_world() { return test::surface_world(kMeshLevel, test::surface_material(0.0, 0.5)); }
 
 // A ball that falls on a fixed ring sits in its hole, at the height that the two circles say.
 TEST(StaticMesh, ABallRestsInTheHoleOfARing) {

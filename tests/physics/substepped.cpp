@@ -7,22 +7,14 @@
 #include <cstdio>
 
 #include "gotai/core/parallel.h"
-#include "gotai/geometry/generate.h"
-#include "gotai/world/world.h"
+#include "support/worlds.h"
 
 namespace gotai {
 namespace {
 
 constexpr int kLevel = 4;
 
-std::shared_ptr<const voxel::Shape> shape_of(const char* name) {
-  geometry::GeneratorOptions options;
-  options.shape = name;
-  voxel::ShapeOptions how;
-  how.prepared_level = kLevel;
-  return std::make_shared<const voxel::Shape>(
-      voxel::make_shape(name, geometry::generate(options), how));
-}
+test::ShapePointer shape_of(const char* name) { return test::make_generated(name, kLevel); }
 
 /// Height of a flat cube's centre when its voxel spheres touch the floor.
 double touching_height() {
@@ -32,16 +24,10 @@ double touching_height() {
 }
 
 World floor_world(double restitution, double friction, double dt) {
-  model::Settings settings;
-  settings.gravity = Vec3(0, 0, -9.8);
-  settings.collision.level = kLevel;
+  model::Settings settings = test::thesis_settings(kLevel, dt);
   settings.impulse.solver = model::SolverName::substepped;
-  settings.time.step = dt;
   World world(settings);
-  model::Material material;
-  material.restitution = restitution;
-  material.friction = friction;
-  world.set_default_material(material);
+  world.set_default_material(test::surface_material(restitution, friction));
   world.add_plane({});
   return world;
 }
@@ -101,27 +87,11 @@ TEST(Substepped, RestitutionReturnsTheSpeed) {
 
 /// Velocity after the first impact of a cube, prepared with its surface, on the floor.
 Vec3 bounce_on_surface(const Vec3& v, double friction) {
-  model::Settings settings;
-  settings.gravity = Vec3(0, 0, -9.8);
-  settings.collision.model = model::CollisionModel::surface;
-  settings.collision.level = kLevel;
-  settings.impulse.contacts = model::ContactTreatment::reduced;
-  settings.impulse.solver = model::SolverName::substepped;
-  settings.time.step = 1e-3;
-  World world(settings);
-  model::Material material;
-  material.restitution = 0.3;
-  material.friction = friction;
-  world.set_default_material(material);
+  World world =
+      test::surface_world(kLevel, test::surface_material(0.3, friction), 1e-3, Vec3(0, 0, -9.8));
   world.add_plane({});
-  geometry::GeneratorOptions options;
-  options.shape = "cube";
-  voxel::ShapeOptions how;
-  how.prepared_level = kLevel;
-  how.surface_level = kLevel;
-  const auto cube = std::make_shared<const voxel::Shape>(
-      voxel::make_shape("cube", geometry::generate(options), how));
-  add_cube(world, world.add_shape(cube), Vec3(0, 0, 0.8), v);
+  add_cube(world, world.add_shape(test::surface_shape({.shape = "cube"}, kLevel)), Vec3(0, 0, 0.8),
+           v);
   while (world.time() < 1.0 && world.bodies().v_W[1].z() <= 0.0) world.step();
   return world.bodies().v_W[1];
 }
@@ -186,17 +156,10 @@ TEST(Substepped, SameBitsForOneAndTwoThreadsAndTwice) {
 
 // Many pairs in every wave of the solver, so that threads do share the work.
 TEST(Substepped, APileOnItsSurfacesHasTheSameBitsForAnyThreadsAndInstructionSet) {
-  const auto shape = std::make_shared<const voxel::Shape>(
-      voxel::make_shape("hexapod", geometry::generate({.shape = "hexapod"}),
-                        {.prepared_level = kLevel, .surface_level = kLevel}));
+  const auto shape = test::surface_shape({.shape = "hexapod"}, kLevel);
   const auto run = [&](int threads) {
     const ThreadLimit limit(threads);
-    model::Settings settings;
-    settings.collision.model = model::CollisionModel::surface;
-    settings.collision.level = kLevel;
-    settings.impulse.contacts = model::ContactTreatment::reduced;
-    settings.time.step = 1.0 / 60.0;
-    World world(settings);
+    World world = test::surface_world(kLevel, {});
     world.add_plane({});
     const ShapeId id = world.add_shape(shape);
     for (int k = 0; k < 300; ++k) {

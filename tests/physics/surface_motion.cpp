@@ -4,8 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "gotai/geometry/generate.h"
-#include "gotai/world/world.h"
+#include "support/worlds.h"
 
 namespace gotai {
 namespace {
@@ -13,34 +12,19 @@ namespace {
 using model::ContactTreatment;
 using model::SolverName;
 
-std::shared_ptr<const voxel::Shape> surface_shape(const geometry::GeneratorOptions& options,
-                                                  int level) {
-  voxel::ShapeOptions how;
-  how.prepared_level = 5;
-  how.surface_level = level;
-  return std::make_shared<const voxel::Shape>(
-      voxel::make_shape(options.shape, geometry::generate(options), how));
-}
+using test::surface_shape;
 
-std::shared_ptr<const voxel::Shape> surface_cube(int level) {
-  geometry::GeneratorOptions options;
-  options.shape = "cube";
-  return surface_shape(options, level);
-}
+test::ShapePointer surface_cube(int level) { return surface_shape({.shape = "cube"}, level); }
 
 World surface_world(double friction, double dt, SolverName solver, ContactTreatment contacts) {
   model::Settings settings;
   settings.gravity = Vec3(0, 0, -9.8);
-  settings.collision.model = model::CollisionModel::surface;
   settings.collision.level = 3;
   settings.impulse.solver = solver;
   settings.impulse.contacts = contacts;
   settings.time.step = dt;
   World world(settings);
-  model::Material material;
-  material.restitution = 0.0;
-  material.friction = friction;
-  world.set_default_material(material);
+  world.set_default_material(test::surface_material(0.0, friction));
   return world;
 }
 
@@ -196,11 +180,8 @@ TEST(SurfaceSlide, ADiscSpinsAndSlidesTogether) {
   options.shape = "disc";
   options.thickness = 0.025;
   options.subdivisions = 12;
-  voxel::ShapeOptions how;
-  how.prepared_level = 7;
-  how.surface_level = 6;
-  const auto disc = std::make_shared<const voxel::Shape>(
-      voxel::make_shape("disc", geometry::generate(options), how));
+  const auto disc = std::make_shared<const voxel::Shape>(voxel::make_shape(
+      "disc", geometry::generate(options), {.prepared_level = 7, .surface_level = 6}));
   World world = surface_world(0.3, 1.0 / 200.0, SolverName::substepped, ContactTreatment::all);
   world.add_plane({});
   constexpr double kSpin = 10.0;

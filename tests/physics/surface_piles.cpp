@@ -7,33 +7,15 @@
 #include <string>
 
 #include "gotai/core/random.h"
-#include "gotai/geometry/generate.h"
-#include "gotai/world/world.h"
+#include "support/worlds.h"
 
 namespace gotai {
 namespace {
 
 constexpr int kPileLevel = 6;
 
-std::shared_ptr<const voxel::Shape> pile_shape(const std::string& name) {
-  return std::make_shared<const voxel::Shape>(
-      voxel::make_shape(name, geometry::generate({.shape = name}),
-                        {.prepared_level = kPileLevel, .surface_level = kPileLevel}));
-}
-
 World world_with(const Vec3& gravity) {
-  model::Settings settings;
-  settings.gravity = gravity;
-  settings.collision.model = model::CollisionModel::surface;
-  settings.collision.level = kPileLevel;
-  settings.impulse.contacts = model::ContactTreatment::reduced;
-  settings.time.step = 1.0 / 60.0;
-  World world(settings);
-  model::Material material;
-  material.friction = 0.5;
-  material.restitution = 0.2;
-  world.set_default_material(material);
-  return world;
+  return test::surface_world(kPileLevel, test::surface_material(0.2, 0.5), 1.0 / 60.0, gravity);
 }
 
 class DeepOverlap : public testing::TestWithParam<const char*> {};
@@ -42,7 +24,7 @@ class DeepOverlap : public testing::TestWithParam<const char*> {};
 // energy there is comes from parting; the pile's energy is what lifting it by its own height takes.
 TEST_P(DeepOverlap, PartsWithoutABang) {
   World world = world_with(Vec3::Zero());
-  const auto shape = pile_shape(GetParam());
+  const auto shape = test::surface_shape({.shape = GetParam()}, kPileLevel);
   const ShapeId id = world.add_shape(shape);
   const Box3 box = geometry::bounding_box(shape->mesh);
   const double size = box.sizes().maxCoeff();
@@ -97,7 +79,7 @@ TEST(Chain, TenLinksHangForHalfAMinute) {
   constexpr double kRing = 0.5 / 1.3;
   constexpr double kTube = 0.3 * kRing;
   World world = world_with(Vec3(0, 0, -9.81));
-  const ShapeId id = world.add_shape(pile_shape("torus"));
+  const ShapeId id = world.add_shape(test::surface_shape({.shape = "torus"}, kPileLevel));
   for (int k = 0; k < kLinks; ++k) {
     BodyDescription link;
     link.shape = id;
@@ -132,7 +114,7 @@ TEST(FastRings, DoNotPassThroughEachOther) {
   constexpr int kPairs = 200;
   constexpr double kRing = 0.5 / 1.3;
   World world = world_with(Vec3::Zero());
-  const ShapeId id = world.add_shape(pile_shape("torus"));
+  const ShapeId id = world.add_shape(test::surface_shape({.shape = "torus"}, kPileLevel));
   Random random(5);
   for (int k = 0; k < kPairs; ++k) {
     const Vec3 from = random.unit_vector();

@@ -4,31 +4,26 @@
 #include <cmath>
 #include <cstdio>
 
-#include "gotai/geometry/generate.h"
-#include "gotai/world/world.h"
+#include "support/worlds.h"
 
 namespace gotai {
 namespace {
 
 constexpr double kGravity = 9.8;
 constexpr double kRadius = 0.5;
-
-std::shared_ptr<const voxel::Shape> surface_shape(const geometry::GeneratorOptions& options) {
-  return std::make_shared<const voxel::Shape>(voxel::make_shape(
-      options.shape, geometry::generate(options), {.prepared_level = 5, .surface_level = 6}));
-}
+constexpr int kRollingLevel = 6;
 
 // Halved icosahedron: 20,480 triangles.
-const std::shared_ptr<const voxel::Shape>& halved_icosahedron() {
-  static const auto shape =
-      surface_shape({.shape = "rock", .size = 2 * kRadius, .subdivisions = 5, .roughness = 0.0});
+const test::ShapePointer& halved_icosahedron() {
+  static const auto shape = test::surface_shape(
+      {.shape = "rock", .size = 2 * kRadius, .subdivisions = 5, .roughness = 0.0}, kRollingLevel);
   return shape;
 }
 
 // A cube's mesh blown up: 20,172 triangles, of very different sizes.
-const std::shared_ptr<const voxel::Shape>& blown_up_cube() {
-  static const auto shape =
-      surface_shape({.shape = "sphere", .size = 2 * kRadius, .subdivisions = 41});
+const test::ShapePointer& blown_up_cube() {
+  static const auto shape = test::surface_shape(
+      {.shape = "sphere", .size = 2 * kRadius, .subdivisions = 41}, kRollingLevel);
   return shape;
 }
 
@@ -40,19 +35,10 @@ struct Rolling {
 };
 
 // A ball on a ground that is tilted about y.
-Rolling ball_on(Ground ground, double tilt, const std::shared_ptr<const voxel::Shape>& shape,
-                double yaw, const Vec3& v, const Vec3& w) {
-  model::Settings settings;
-  settings.gravity = Vec3(0, 0, -kGravity);
-  settings.collision.model = model::CollisionModel::surface;
-  settings.collision.level = 5;
-  settings.impulse.contacts = model::ContactTreatment::reduced;
-  settings.time.step = 1.0 / 60.0;
-  World world(settings);
-  model::Material material;
-  material.restitution = 0.0;
-  material.friction = 0.5;
-  world.set_default_material(material);
+Rolling ball_on(Ground ground, double tilt, const test::ShapePointer& shape, double yaw,
+                const Vec3& v, const Vec3& w) {
+  World world = test::surface_world(kRollingLevel, test::surface_material(0.0, 0.5), 1.0 / 60.0,
+                                    Vec3(0, 0, -kGravity));
   const Quat q(Eigen::AngleAxisd(tilt, Vec3::UnitY()));
   if (ground == Ground::plane) {
     PlaneDescription plane;
@@ -60,7 +46,8 @@ Rolling ball_on(Ground ground, double tilt, const std::shared_ptr<const voxel::S
     world.add_plane(plane);
   } else {
     BodyDescription slab;
-    slab.shape = world.add_shape(surface_shape({.shape = "box", .extents = Vec3(14, 3, 1)}));
+    slab.shape = world.add_shape(
+        test::surface_shape({.shape = "box", .extents = Vec3(14, 3, 1)}, kRollingLevel));
     slab.kind = model::BodyKind::fixed;
     slab.com_position = q * Vec3(0, 0, -0.5);
     slab.X_WM.q = q;

@@ -6,8 +6,7 @@
 #include <cstdio>
 
 #include "gotai/core/random.h"
-#include "gotai/geometry/generate.h"
-#include "gotai/world/world.h"
+#include "support/worlds.h"
 
 namespace gotai {
 namespace {
@@ -23,21 +22,9 @@ struct Stand {
 
 // Ten cubes of edge 1 m, each put down aside and turned at random by at most this.
 Stand stack_for_ten_seconds(double aside, double turned, unsigned seed) {
-  model::Settings settings;
-  settings.gravity = Vec3(0, 0, -9.81);
-  settings.collision.model = model::CollisionModel::surface;
-  settings.collision.level = kStackLevel;
-  settings.impulse.contacts = model::ContactTreatment::reduced;
-  settings.time.step = 1.0 / 60.0;
-  World world(settings);
-  model::Material material;
-  material.friction = 0.5;
-  material.restitution = 0.2;
-  world.set_default_material(material);
+  World world = test::surface_world(kStackLevel, test::surface_material(0.2, 0.5));
   world.add_plane({});
-  static const auto cube = std::make_shared<const voxel::Shape>(
-      voxel::make_shape("cube", geometry::generate({.shape = "cube"}),
-                        {.prepared_level = kStackLevel, .surface_level = kStackLevel}));
+  static const auto cube = test::surface_shape({.shape = "cube"}, kStackLevel);
   const ShapeId shape = world.add_shape(cube);
   Random random(seed);
   for (int k = 0; k < kCubes; ++k) {

@@ -19,8 +19,8 @@ inline World falling_cubes(int n) {
   settings.collision.level = 3;
   settings.time.step = 0.01;
   World world(settings);
-  const auto shape = std::make_shared<const voxel::Shape>(
-      voxel::make_shape("cube", geometry::generate({.shape = "cube"}), {.prepared_level = 3}));
+  const auto shape = std::make_shared<const voxel::Shape>(voxel::make_shape(
+      "cube", geometry::generate({.shape = "cube"}), {.prepared_level = 3, .surface_level = 0}));
   world.add_shape(shape);
   world.add_plane({.name = "floor"});
   world.add_container({.name = "tray", .floor_center = {5, 0, 0}, .inner = {2, 2, 1}});

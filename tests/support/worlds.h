@@ -1,5 +1,6 @@
 /// @file
-/// Small worlds of the thesis's experiments for tests: one material, g = 9.8, spheres.
+/// Small worlds for tests, of one material: the thesis's (spheres, g = 9.8) and those with contacts
+/// from the surfaces as users run them.
 #pragma once
 
 #include <cmath>
@@ -11,14 +12,19 @@
 
 namespace gotai::test {
 
-/// A prepared generated shape.
-inline std::shared_ptr<const voxel::Shape> make_generated(const std::string& name, int level) {
-  geometry::GeneratorOptions options;
-  options.shape = name;
-  voxel::ShapeOptions shape_options;
-  shape_options.prepared_level = level;
+using ShapePointer = std::shared_ptr<const voxel::Shape>;
+
+/// A generated shape with voxel spheres alone.
+inline ShapePointer make_generated(const std::string& name, int level) {
+  return std::make_shared<voxel::Shape>(voxel::make_shape(
+      name, geometry::generate({.shape = name}), {.prepared_level = level, .surface_level = 0}));
+}
+
+/// A generated shape with its surface.
+inline ShapePointer surface_shape(const geometry::GeneratorOptions& options, int level) {
   return std::make_shared<voxel::Shape>(
-      voxel::make_shape(name, geometry::generate(options), shape_options));
+      voxel::make_shape(options.shape, geometry::generate(options),
+                        {.prepared_level = level, .surface_level = level}));
 }
 
 /// Settings of the thesis's collision model at a level.
@@ -37,6 +43,19 @@ inline model::Material surface_material(double restitution, double friction) {
   material.restitution = restitution;
   material.friction = friction;
   return material;
+}
+
+/// An empty world with contacts from the surfaces.
+/// @param dt  step [s]
+inline World surface_world(int level, const model::Material& material, double dt = 1.0 / 60.0,
+                           const Vec3& gravity = Vec3(0.0, 0.0, -9.81)) {
+  model::Settings settings;
+  settings.gravity = gravity;
+  settings.collision.level = level;
+  settings.time.step = dt;
+  World world(settings);
+  world.set_default_material(material);
+  return world;
 }
 
 /// A cube of edge 1 and 1 kg over the floor z = 0.

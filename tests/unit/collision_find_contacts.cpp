@@ -24,7 +24,7 @@ struct Scene {
   CollisionCache cache;
   SearchStatistics statistics;
 
-  explicit Scene(int level) { settings.level = level; }
+  explicit Scene(int level) : settings{model::CollisionModel::spheres, level} {}
   std::uint32_t add_shape(std::shared_ptr<const voxel::Shape> shape) {
     shapes.push_back(std::move(shape));
     return static_cast<std::uint32_t>(shapes.size() - 1);

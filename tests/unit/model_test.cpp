@@ -100,6 +100,19 @@ TEST(Settings, ValidateNamesTheSetting) {
   EXPECT_THAT(message_of([&] { validate(settings); }), HasSubstr("impulse.penetration = 1e-09"));
 }
 
+TEST(Settings, FewContactsOfTheSurfacesUnlessAnotherMethodReadsThem) {
+  Settings settings;
+  EXPECT_EQ(settings.collision.model, CollisionModel::surface);
+  EXPECT_EQ(contact_treatment(settings), ContactTreatment::reduced);
+  settings.impulse.method = ImpulseMethodName::penalty;
+  EXPECT_EQ(contact_treatment(settings), ContactTreatment::all);
+  settings.impulse.method = ImpulseMethodName::constraint;
+  settings.collision.model = CollisionModel::spheres;
+  EXPECT_EQ(contact_treatment(settings), ContactTreatment::all);
+  settings.impulse.contacts = ContactTreatment::apparent;
+  EXPECT_EQ(contact_treatment(settings), ContactTreatment::apparent);
+}
+
 TEST(ContactSet, GapsFollowTheAnchors) {
   BodyState bodies;
   append_body(bodies);

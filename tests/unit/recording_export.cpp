@@ -42,8 +42,9 @@ World flying_bodies() {
   settings.time.step = 1.0 / 120.0;
   World world(settings);
   for (const char* name : {"hexapod", "torus"}) {
-    world.add_shape(std::make_shared<const voxel::Shape>(voxel::make_shape(
-        name, geometry::generate({.shape = name, .size = 1.0}), {.prepared_level = 5})));
+    world.add_shape(std::make_shared<const voxel::Shape>(
+        voxel::make_shape(name, geometry::generate({.shape = name, .size = 1.0}),
+                          {.prepared_level = 5, .surface_level = 0})));
   }
   for (int i = 0; i < 200; ++i) {
     BodyDescription body;

@@ -149,9 +149,17 @@ TEST(InitialOverlap, IsListedAndRefusedBeyondOneVoxel) {
   EXPECT_EQ(build("[world]\nallow_initial_overlap = true\n" + text).overlaps.size(), 1u);
 }
 
+// Bodies that have no contacts because neither surface faces the other's.
+TEST(InitialOverlap, OfABodyInsideAnotherIsRefused) {
+  EXPECT_THAT(build_message(kCube + "[shapes.grain]\ngenerate = \"cube\"\nsize = 0.3\n" +
+                            "[[bodies]]\nname = \"hull\"\nshape = \"cube\"\n"
+                            "[[bodies]]\nname = \"core\"\nshape = \"grain\"\n"),
+              HasSubstr("hull and core: "));
+}
+
 TEST(InitialOverlap, OfLessThanAVoxelIsListedOnly) {
   const BuiltScene built =
-      build(kCube + "[[plane]]\n[[bodies]]\nshape = \"cube\"\nposition = [0, 0, 0.5]\n");
+      build(kCube + "[[plane]]\n[[bodies]]\nshape = \"cube\"\nposition = [0, 0, 0.45]\n");
   ASSERT_EQ(built.overlaps.size(), 1u);
   EXPECT_FALSE(built.overlaps[0].is_refused());
   EXPECT_EQ(built.overlaps[0].body_b, "plane 1");

@@ -22,11 +22,12 @@ namespace {
 
 std::unique_ptr<World> falling_cube() {
   model::Settings settings;
+  settings.collision.model = model::CollisionModel::spheres;
   settings.collision.level = 3;
   settings.time.step = 0.01;
   auto world = std::make_unique<World>(settings);
-  world->add_shape(std::make_shared<const voxel::Shape>(
-      voxel::make_shape("cube", geometry::generate({}), {.prepared_level = 3})));
+  world->add_shape(std::make_shared<const voxel::Shape>(voxel::make_shape(
+      "cube", geometry::generate({}), {.prepared_level = 3, .surface_level = 0})));
   BodyDescription body;
   body.X_WM.p = Vec3(0.0, 0.0, 5.0);
   world->add_body(body);
@@ -179,8 +180,9 @@ TEST_F(Live, SlowsTheRunByLessThanATwentieth) {
   settings.impulse.contacts = model::ContactTreatment::apparent;
   settings.time.step = 0.01;
   World pile(settings);
-  pile.add_shape(std::make_shared<const voxel::Shape>(voxel::make_shape(
-      "block", geometry::generate({.shape = "hexapod", .size = 1.0}), {.prepared_level = 4})));
+  pile.add_shape(std::make_shared<const voxel::Shape>(
+      voxel::make_shape("block", geometry::generate({.shape = "hexapod", .size = 1.0}),
+                        {.prepared_level = 4, .surface_level = 0})));
   pile.add_plane({});
   for (int i = 0; i < 20; ++i) {
     BodyDescription body;

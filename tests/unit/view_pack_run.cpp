@@ -44,8 +44,8 @@ struct Reader {
 };
 
 ShapeView cube() {
-  static const ShapeView shape =
-      describe(voxel::make_shape("cube", geometry::generate({}), {.prepared_level = 4}));
+  static const ShapeView shape = describe(
+      voxel::make_shape("cube", geometry::generate({}), {.prepared_level = 4, .surface_level = 0}));
   return shape;
 }
 

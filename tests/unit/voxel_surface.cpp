@@ -310,6 +310,36 @@ TEST(SurfaceModel, StaysSmallAndIsTheSameEveryTime) {
   EXPECT_EQ(model.tree.normal, again.tree.normal);
 }
 
+// The level follows from the thinnest walls and from the accuracy that is wished for.
+TEST(SurfaceModel, LevelFollowsFromWallsAndAccuracy) {
+  // A plate of 0.02 m is a voxel thick at level 7 (1/64 m), not at level 6.
+  const Mesh plate = make("box", {1.0, 1.0, 0.02});
+  EXPECT_EQ(make_surface_model(plate, 4).level, 4);
+  EXPECT_EQ(make_surface_model(plate, 4, 0.1).level, 7);
+  const Mesh cube = make("cube");
+  EXPECT_EQ(make_surface_model(cube, 4, 0.1).level, 4);
+  // The wish is kept, by a measure of its own: exact distances at points near the surface.
+  const Mesh ball = make("sphere");
+  int coarser = 0;
+  for (const double wish : {1e-2, 1e-3, 2e-4}) {
+    const SurfaceModel model = make_surface_model(ball, 3, wish);
+    EXPECT_GT(model.level, coarser);
+    coarser = model.level;
+    const SignedDistance surface(ball);
+    Random random(8);
+    double sum = 0.0;
+    for (int i = 0; i < 500; ++i) {
+      const Vec3 x = model.center + random.uniform(0.48, 0.52) * random.unit_vector();
+      sum +=
+          std::pow(evaluate(model.field, x - model.center).distance - surface.query(x).distance, 2);
+    }
+    EXPECT_LE(std::sqrt(sum / 500), 1.2 * wish);
+  }
+  // What no level can do is not done for ever.
+  EXPECT_EQ(make_surface_model(make("hexapod"), 5, 1e-9).level, kMaxSurfaceLevel);
+  EXPECT_THROW(make_surface_model(cube, 4, -1.0), InvalidArgument);
+}
+
 TEST(SurfaceModel, RefusesLevelsOutOfRange) {
   const Mesh mesh = make("cube");
   EXPECT_THROW(make_surface_model(mesh, kMinSurfaceLevel - 1), InvalidArgument);

@@ -12,12 +12,13 @@ namespace gotai {
 namespace {
 
 std::shared_ptr<const voxel::Shape> cube() {
-  return std::make_shared<voxel::Shape>(
-      voxel::make_shape("cube", geometry::generate({.shape = "cube"}), {.prepared_level = 3}));
+  return std::make_shared<voxel::Shape>(voxel::make_shape(
+      "cube", geometry::generate({.shape = "cube"}), {.prepared_level = 3, .surface_level = 0}));
 }
 
 model::Settings level_3(double step) {
   model::Settings settings;
+  settings.collision.model = model::CollisionModel::spheres;
   settings.collision.level = 3;
   settings.time.step = step;
   return settings;

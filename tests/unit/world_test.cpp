@@ -17,6 +17,7 @@ std::shared_ptr<const voxel::Shape> shape_of(const char* name, int level) {
   options.shape = name;
   voxel::ShapeOptions how;
   how.prepared_level = level;
+  how.surface_level = 0;
   return std::make_shared<const voxel::Shape>(
       voxel::make_shape(name, geometry::generate(options), how));
 }
@@ -24,6 +25,7 @@ std::shared_ptr<const voxel::Shape> shape_of(const char* name, int level) {
 model::Settings settings_at(int level, double dt) {
   model::Settings settings;
   settings.gravity = Vec3(0, 0, -9.8);
+  settings.collision.model = model::CollisionModel::spheres;
   settings.collision.level = level;
   settings.time.step = dt;
   return settings;

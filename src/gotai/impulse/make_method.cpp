@@ -17,9 +17,9 @@ std::unique_ptr<ImpulseMethod> make_constraint_method(const model::Settings& set
   using model::ContactTreatment;
   using model::SolverName;
   const model::ImpulseSettings& impulse = settings.impulse;
-  if (impulse.contacts == ContactTreatment::apparent)
-    return std::make_unique<ApparentMethod>(settings);
-  const bool suits_substeps = impulse.contacts == ContactTreatment::reduced ||
+  const ContactTreatment contacts = model::contact_treatment(settings);
+  if (contacts == ContactTreatment::apparent) return std::make_unique<ApparentMethod>(settings);
+  const bool suits_substeps = contacts == ContactTreatment::reduced ||
                               settings.collision.model == model::CollisionModel::surface;
   if (impulse.solver == SolverName::substepped ||
       (impulse.solver == SolverName::automatic && suits_substeps))

@@ -25,8 +25,9 @@ constexpr std::array<std::pair<ImpulseMethodName, std::string_view>, 6> kMethods
      {ImpulseMethodName::constraint, "constraint"},
      {ImpulseMethodName::sem, "sem"},
      {ImpulseMethodName::vector_field, "vector-field"}}};
-constexpr std::array<std::pair<ContactTreatment, std::string_view>, 3> kTreatments{
-    {{ContactTreatment::all, "all"},
+constexpr std::array<std::pair<ContactTreatment, std::string_view>, 4> kTreatments{
+    {{ContactTreatment::automatic, "auto"},
+     {ContactTreatment::all, "all"},
      {ContactTreatment::apparent, "apparent"},
      {ContactTreatment::reduced, "reduced"}}};
 constexpr std::array<std::pair<SolverName, std::string_view>, 4> kSolvers{
@@ -60,6 +61,13 @@ void require(bool ok, std::string_view name, double value, std::string_view reas
 }
 
 }  // namespace
+
+ContactTreatment contact_treatment(const Settings& settings) {
+  if (settings.impulse.contacts != ContactTreatment::automatic) return settings.impulse.contacts;
+  const bool few = settings.collision.model == CollisionModel::surface &&
+                   settings.impulse.method == ImpulseMethodName::constraint;
+  return few ? ContactTreatment::reduced : ContactTreatment::all;
+}
 
 std::string_view to_string(CollisionModel v) { return name_of<CollisionModel>(kModels, v); }
 std::string_view to_string(ImpulseMethodName v) { return name_of<ImpulseMethodName>(kMethods, v); }

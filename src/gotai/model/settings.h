@@ -20,15 +20,15 @@ enum class ImpulseMethodName : std::uint8_t {
   vector_field
 };
 /// Which contacts an impulse method reads: all that were found, chapter 5's one per pair, or few
-/// per patch.
-enum class ContactTreatment : std::uint8_t { all, apparent, reduced };
+/// per patch. Automatic: see contact_treatment().
+enum class ContactTreatment : std::uint8_t { automatic, all, apparent, reduced };
 /// How the constraint method solves. Automatic: sub-stepped for surface contacts; for spheres exact
 /// or iterative by size.
 enum class SolverName : std::uint8_t { automatic, exact, iterative, substepped };
 enum class Integrator : std::uint8_t { semi_implicit, explicit_euler };
 
 struct CollisionSettings {
-  CollisionModel model = CollisionModel::spheres;
+  CollisionModel model = CollisionModel::surface;
   int level = 6;  ///< k of Fig. 3-5; at most the prepared level of every shape
 };
 
@@ -39,7 +39,7 @@ inline constexpr double kLargestPenetration = 0.5;
 
 struct ImpulseSettings {
   ImpulseMethodName method = ImpulseMethodName::constraint;
-  ContactTreatment contacts = ContactTreatment::all;
+  ContactTreatment contacts = ContactTreatment::automatic;
   SolverName solver = SolverName::automatic;
   /// Compliance that shares the load of redundant contacts, as a fraction of trace(A)/n (erratum
   /// 23).
@@ -66,6 +66,10 @@ struct Settings {
   ImpulseSettings impulse;
   TimeSettings time;
 };
+
+/// The contacts that are read, after `automatic` is decided: few per patch for the constraint
+/// method on surface contacts; all for the thesis's spheres and for the methods compared with it.
+ContactTreatment contact_treatment(const Settings& settings);
 
 /// Names as written in scene files ("impulse-averaged"). The parse functions are their inverse.
 std::string_view to_string(CollisionModel value);

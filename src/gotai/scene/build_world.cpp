@@ -126,6 +126,7 @@ PreparedShape prepare_shape(const ShapeDescription& description, const BuildOpti
         voxel::make_shape_cached(description.name, std::move(mesh),
                                  {.prepared_level = description.prepared_level,
                                   .surface_level = description.surface_level,
+                                  .accuracy = description.accuracy,
                                   .thickness = description.thickness},
                                  options.cache_folder);
     prepared.shape = std::move(cached.shape);
@@ -137,19 +138,13 @@ PreparedShape prepare_shape(const ShapeDescription& description, const BuildOpti
 
 std::vector<InitialOverlap> find_overlaps(const World& world) {
   const model::BodyState& bodies = world.bodies();
-  const model::ContactSet contacts = world.find_contacts_now();
   const auto voxel_edge = [&](model::BodyIndex i) {
     if (bodies.geometry[i] != model::Geometry::shape) return 0.0;
     return world.shapes()[bodies.shape[i]]->pyramid.grid.voxel_edge(
         world.settings().collision.level);
   };
   std::vector<InitialOverlap> overlaps;
-  for (const model::ContactPair& pair : contacts.pairs) {
-    double depth = 0.0;
-    for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
-      depth = std::max(depth, -contacts.gap[c]);
-    }
-    if (depth <= 0.0) continue;
+  for (const auto& [pair, depth] : world.find_overlaps_now()) {
     overlaps.push_back({world.body_name(pair.body_a), world.body_name(pair.body_b), depth,
                         std::max(voxel_edge(pair.body_a), voxel_edge(pair.body_b))});
   }

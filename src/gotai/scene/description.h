@@ -32,6 +32,7 @@ struct ShapeDescription {
   /// Level of the surface model; 0: none. By default the level of [collision] when its model is
   /// "surface".
   int surface_level = 0;
+  double accuracy = 0.0;       ///< wish: see voxel::ShapeOptions; 0: the surface level is as given
   std::uint32_t material = 0;  ///< of bodies that name none
 };
 

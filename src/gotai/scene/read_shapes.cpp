@@ -60,6 +60,7 @@ ShapeDescription read_shape(const Entry& entry, SceneDescription& scene) {
   shape.surface_level =
       static_cast<int>(table.integer("surface_level", needs_surface ? surface_level : 0,
                                      voxel::kMinSurfaceLevel, voxel::kMaxSurfaceLevel));
+  shape.accuracy = table.number("accuracy", 0.0, range::non_negative);
   shape.material = read_material(table, scene).value_or(0);
   const Node* mesh = table.find("mesh");
   const Node* generator = table.find("generate");

@@ -89,7 +89,7 @@ std::vector<std::pair<std::string, std::string>> describe(const model::Settings&
   const Vec3& g = settings.gravity;
   return {
       {"Method", std::string(model::to_string(settings.impulse.method))},
-      {"Contacts", std::string(model::to_string(settings.impulse.contacts))},
+      {"Contacts", std::string(model::to_string(model::contact_treatment(settings)))},
       {"Collision", fmt::format("{}, level {}", model::to_string(settings.collision.model),
                                 settings.collision.level)},
       {"Step", settings.time.step > 0.0 ? fmt::format("{:g} ms", 1e3 * settings.time.step)

@@ -173,6 +173,7 @@ Hash128 content_hash(const geometry::Mesh& mesh, const ShapeOptions& options) {
   Hasher hasher;
   hasher.value(kRecipe).value(static_cast<std::int32_t>(options.prepared_level));
   hasher.value(static_cast<std::int32_t>(options.surface_level));
+  hasher.value(options.accuracy);
   hasher.value(options.thickness);
   // Vectors and index arrays are plain coordinates without padding.
   hasher.array(std::span<const Vec3>(mesh.vertices));
@@ -198,8 +199,8 @@ Shape make_shape(std::string name, geometry::Mesh mesh, const ShapeOptions& opti
   find_mass(solid, inside, shape);
   shape.pyramid = build_pyramid(solid.grid, inside);
   if (options.surface_level != 0)
-    shape.surface =
-        make_surface_model(solid.mesh, options.surface_level, solid.tree ? &*solid.tree : nullptr);
+    shape.surface = make_surface_model(solid.mesh, options.surface_level, options.accuracy,
+                                       solid.tree ? &*solid.tree : nullptr);
   shape.mesh = std::move(solid.mesh);
   derive_radii(shape);
   return shape;

@@ -15,8 +15,12 @@ namespace gotai::voxel {
 /// What a shape is prepared with.
 struct ShapeOptions {
   int prepared_level = 7;  ///< M, the finest level of the pyramid, 1..kMaxLevel
-  /// Level of the surface model, kMinSurfaceLevel..kMaxSurfaceLevel; 0: prepared without one.
-  int surface_level = 0;
+  /// Level of the surface model, kMinSurfaceLevel..kMaxSurfaceLevel, for worlds at the same level;
+  /// 0: none, for the thesis's spheres alone.
+  int surface_level = 6;
+  /// A wish: the surface level rises from there until the thinnest walls are a voxel thick and the
+  /// surface is off by at most this, as a fraction of the largest extent; 0: the level is as given.
+  double accuracy = 0.0;
   /// Thickness that makes a solid of an open sheet (or a hollow shell of a closed surface) [m];
   /// 0: the surface encloses the body.
   double thickness = 0.0;

@@ -71,10 +71,14 @@ inline constexpr int kMaxSurfaceLevel = 8;
 
 /// Prepares the surface model of a mesh.
 /// @param level   kMinSurfaceLevel..kMaxSurfaceLevel
+/// @param accuracy  0: at that level. Else that is the coarsest level that may be taken: it rises,
+///                to kMaxSurfaceLevel at most, until the thinnest walls are a voxel thick and the
+///                field near the surface is off by at most this root mean square, as a fraction of
+///                the largest extent
 /// @param inside  the mesh's winding numbers where the surface is not closed or parts overlap;
 ///                null for closed surfaces
-/// @throws InvalidArgument for a level out of range or a mesh without area
-SurfaceModel make_surface_model(const geometry::Mesh& mesh, int level,
+/// @throws InvalidArgument for a level out of range, a negative accuracy or a mesh without area
+SurfaceModel make_surface_model(const geometry::Mesh& mesh, int level, double accuracy = 0.0,
                                 const WindingTree* inside = nullptr);
 
 /// Orders samples for the tree and bounds its nodes.

@@ -29,7 +29,7 @@ model::StepReport World::step() {
 
   const collision::SearchStatistics search = collision::find_contacts(
       bodies_, shapes_, settings_.collision, plan.contact_margin, cache_, contacts_,
-      {settings_.impulse.contacts, plan.dt, memory_.entries, &anchors_});
+      {model::contact_treatment(settings_), plan.dt, memory_.entries, &anchors_});
   report.collision_s += clock.lap();
 
   update_.reset(bodies_.size(), contacts_.size());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gotai/collision/find_contacts.h"
+#include "gotai/collision/overlaps.h"
 #include "gotai/core/hash.h"
 #include "gotai/dynamics/integrate.h"
 #include "gotai/impulse/method.h"
@@ -123,8 +124,10 @@ class World {
   void restore(const Snapshot& snapshot);
   /// Hash of the state: exactly what snapshot() holds.
   Hash128 state_hash() const;
-  /// Contacts of the present poses, without stepping (initial overlaps).
+  /// Contacts of the present poses, without stepping.
   model::ContactSet find_contacts_now() const;
+  /// Pairs of bodies that overlap at the present poses, ascending.
+  std::vector<collision::PairOverlap> find_overlaps_now() const;
 
  private:
   BodyId append(const std::string& name);

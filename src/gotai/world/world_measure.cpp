@@ -83,4 +83,8 @@ model::ContactSet World::find_contacts_now() const {
   return contacts;
 }
 
+std::vector<collision::PairOverlap> World::find_overlaps_now() const {
+  return collision::find_overlaps(bodies_, shapes_, settings_.collision);
+}
+
 }  // namespace gotai
