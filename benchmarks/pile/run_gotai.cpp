@@ -24,7 +24,8 @@ double rms_speed(const model::BodyState& bodies) {
 
 // Sums over steps, wall clock [ms].
 struct Phases {
-  double collision = 0.0, impulse = 0.0, integration = 0.0, other = 0.0, contacts = 0.0;
+  double collision = 0.0, impulse = 0.0, integration = 0.0, other = 0.0, contacts = 0.0,
+         tests = 0.0;
   int steps = 0;
 
   void add(const model::StepReport& r) {
@@ -33,14 +34,15 @@ struct Phases {
     integration += 1e3 * r.integration_s;
     other += 1e3 * r.other_s;
     contacts += r.contacts;
+    tests += static_cast<double>(r.tests);
     ++steps;
   }
   void print(const char* name) const {
     const double n = std::max(1, steps);
     fmt::print(
         "{:<12} collision {:7.3f}  impulse {:7.3f}  integration {:7.3f}  other {:7.3f}  "
-        "contacts {:6.0f}\n",
-        name, collision / n, impulse / n, integration / n, other / n, contacts / n);
+        "contacts {:6.0f}  tests {:8.0f}\n",
+        name, collision / n, impulse / n, integration / n, other / n, contacts / n, tests / n);
   }
 };
 
