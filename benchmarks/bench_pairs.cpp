@@ -1,8 +1,8 @@
 // Pair poses with exact answers: how far gap and normal of the deepest contact are off, by level,
 // with the orders of convergence, and the processor time of a pair (both directions).
 //
-//   bench_pairs FOLDER [--margin 0.01] [--repeat 5] [--level 6]
-//
+//   bench_pairs FOLDER [--margin 0.01] [--repeat 5] [--level 6] [--mesh hexapod]
+// --mesh leaves out the pairs of others.
 // FOLDER holds the meshes and A_B.csv: kind,px,py,pz,qw,qx,qy,qz,gap,cx,cy,cz,nx,ny,nz with the
 // pose of A's mesh frame in B's, lengths in fractions of the largest extent.
 #include <fmt/format.h>
@@ -148,12 +148,14 @@ Figures measure(Pair& pair, const std::vector<PairPose>& poses, bool touching, d
   return f;
 }
 
-void run(const std::string& folder, double margin, int repeat, const std::vector<int>& levels) {
+void run(const std::string& folder, double margin, int repeat, const std::vector<int>& levels,
+         const std::string& mesh) {
   const std::array<std::array<const char*, 2>, 4> pairs = {
       {{"hexapod", "hexapod"}, {"hexapod", "rock"}, {"rock", "rock"}, {"torus", "torus"}}};
   fmt::print("gap errors in % of the extent; time with reduced contacts up to a gap of {}\n",
              margin);
   for (const auto& [a, b] : pairs) {
+    if (!mesh.empty() && (a != mesh || b != mesh)) continue;
     const std::vector<PairPose> poses = read_poses(fmt::format("{}/{}_{}.csv", folder, a, b));
     std::array<Figures, 2> previous;
     for (const int level : levels) {
@@ -191,17 +193,20 @@ void run(const std::string& folder, double margin, int repeat, const std::vector
 int main(int argc, char** argv) {
   try {
     if (argc < 2)
-      throw InvalidArgument("arguments", "none",
-                            "bench_pairs FOLDER [--margin M] [--repeat R] [--level L]");
+      throw InvalidArgument(
+          "arguments", "none",
+          "bench_pairs FOLDER [--margin M] [--repeat R] [--level L] [--mesh NAME]");
     double margin = 0.01;
     int repeat = 5;
     std::vector<int> levels = {5, 6, 7};
+    std::string mesh;
     for (int i = 2; i + 1 < argc; i += 2) {
       if (std::string(argv[i]) == "--margin") margin = std::stod(argv[i + 1]);
       if (std::string(argv[i]) == "--repeat") repeat = std::stoi(argv[i + 1]);
+      if (std::string(argv[i]) == "--mesh") mesh = argv[i + 1];
       if (std::string(argv[i]) == "--level") levels = {std::stoi(argv[i + 1])};
     }
-    run(argv[1], margin, repeat, levels);
+    run(argv[1], margin, repeat, levels, mesh);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

@@ -21,12 +21,10 @@
 //   f(x) <= margin  implies  I(m) - margin <= sqrt(r^2 + 3/4 s_m^2 + 3/4 s_x^2).
 // The clamp of coarse values keeps it: raised values stay >= I_c(x), and lowered ones are >=
 // phi(x). A sample that uses the coarse lattice and is a hit lies inside, at phi(x) <=
-// -nearest_coarse, unless margin >= nearest_coarse; then phi(m) <= r - nearest_coarse keeps the
-// sphere anyway. So s_x = c is enough for margins below nearest_coarse.
-//
-// Bricks clamp distances to +-R at their nodes, so far from the surface I(m) is too near to 0.
-// Where it is positive no node around m is below -R, and it is at most the unclamped one: the bound
-// holds. Where it is not, the sphere is kept.
+// -nearest_coarse, unless margin >= nearest_coarse; then I(m) - phi(x) <= sqrt(r^2 + 3/4 s_m^2),
+// likewise, keeps the sphere anyway. So s_x = c is enough for margins below nearest_coarse. Centres
+// have their values from the coarse lattice, s_m = 4c: the fine one's would spare few packets (and
+// where bricks clamp them none), but take longer to look up than those packets.
 //
 // Beyond the lattice's cube, with x' the nearest point of the cube, f(x) = f(x') + |x - x'|. Then
 // f(x) >= f(x'), and |x' - m'| <= |x - m|, so the bound holds with I(m'). The cube's faces are four
