@@ -180,5 +180,63 @@ TEST(Reduction, SharesKeepTheLeverArmOfASquarePatch) {
   EXPECT_NEAR(shares, 0.3826, 0.01 * 0.3826);
 }
 
+// Whatever the motion: friction on few shares is the friction on all of their parts.
+TEST(Reduction, SlidingSharesCarryTheFrictionOfAllTheirParts) {
+  Random random(29);
+  Reduction reduction;
+  double worst = 0.0;
+  for (int trial = 0; trial < 300; ++trial) {
+    std::vector<ContactCandidate> before = random_candidates(random, 200);
+    const Vec3 n = random.unit_vector();
+    for (ContactCandidate& c : before) {
+      c.point_A += 0.4 * random.unit_vector();
+      c.point_A += (0.3 - n.dot(c.point_A)) * n;
+      c.normal_A = n;
+      c.gap = 0.0;
+    }
+    SlipField slip;
+    slip.w_A = random.unit_vector();
+    // From spinning in place to sliding straight on: the axis is anywhere in the patch or far out.
+    const double distance = std::pow(10.0, random.uniform(-2.0, 3.0));
+    slip.v_A = slip.w_A.cross(-distance * random.unit_vector());
+    const auto direction = [&](const Vec3& at) {
+      const Vec3 v = slip.at(at);
+      return Vec3((v - n.dot(v) * n).normalized());
+    };
+    Vec3 force = Vec3::Zero();
+    Vec3 moment = Vec3::Zero();
+    double total = 0.0;
+    for (const ContactCandidate& c : before) {
+      force += c.area * direction(c.point_A);
+      moment += c.area * c.point_A.cross(direction(c.point_A));
+      total += c.area;
+    }
+    std::vector<ContactCandidate> candidates = before;
+    reduce_contacts(candidates, {}, {1.0, 1e-4}, reduction, &slip);
+    ASSERT_EQ(reduction.sliding.size(), reduction.kept.size());
+    for (std::size_t k = 0; k < reduction.kept.size(); ++k) {
+      const ShareFriction& share = reduction.sliding[k];
+      EXPECT_GE(share.alignment, 0.0);
+      EXPECT_LE(share.alignment, 1.0);
+      const Vec3 f = share.area * share.alignment * direction(share.point_A);
+      force -= f;
+      moment -= share.point_A.cross(f);
+    }
+    EXPECT_LE(force.norm(), 0.02 * total) << trial;
+    EXPECT_LE(std::abs(n.dot(moment)), 0.02 * total) << trial;
+    worst = std::max({worst, force.norm() / total, std::abs(n.dot(moment)) / total});
+  }
+  RecordProperty("worst", std::to_string(worst));
+}
+
+TEST(Reduction, PatchesThatAreNotFlatHaveNoSlidingShares) {
+  Random random(30);
+  Reduction reduction;
+  std::vector<ContactCandidate> candidates = random_candidates(random, 50);
+  const SlipField slip{Vec3::UnitX(), Vec3::UnitZ()};
+  reduce_contacts(candidates, {}, {1.0, 1e-4}, reduction, &slip);
+  EXPECT_TRUE(reduction.sliding.empty());
+}
+
 }  // namespace
 }  // namespace gotai::collision

@@ -25,7 +25,14 @@ using Shapes = std::span<const std::shared_ptr<const voxel::Shape>>;
 
 /// Contacts of consecutive pairs, found by one task.
 struct Chunk {
+  /// A pair whose anchor was set anew while it slides: shares up to `end` in contacts.sliding, with
+  /// the numbers of contacts within the pair.
+  struct Slid {
+    BodyPair pair;
+    std::uint32_t end = 0;
+  };
   model::ContactSet contacts;
+  std::vector<Slid> slid;
   std::size_t begin = 0;  // place of its first contact among all
   TestCounts tests{};
   double reduction_error = 0.0;
@@ -90,12 +97,16 @@ void place(const model::ContactSet& from, std::size_t begin, model::ContactSet& 
 /// Joins the chunks in their order.
 void join(std::span<Chunk> chunks, model::ContactSet& out) {
   out.pairs.clear();
+  out.sliding.clear();
   std::size_t total = 0;
   for (Chunk& chunk : chunks) {
     chunk.begin = total;
     const auto offset = static_cast<std::uint32_t>(total);
     for (const model::ContactPair& p : chunk.contacts.pairs) {
       out.pairs.push_back({p.body_a, p.body_b, p.begin + offset, p.end + offset});
+    }
+    for (const model::SlidingShare& s : chunk.contacts.sliding) {
+      out.sliding.push_back({s.contact + offset, s.area, s.alignment, s.centre_W, s.point_W});
     }
     total += chunk.contacts.size();
   }
@@ -121,6 +132,22 @@ void take_from_anchors(const model::BodyState& bodies, const model::ContactAncho
     prefetch(anchors.pairs[next].contacts.data(), anchors.pairs[next].contacts.size());
     write_anchored(anchors.pairs[p], bodies, out.pairs[p].begin, out);
   });
+}
+
+/// What the searches of anchors learnt of pairs that slide.
+void take_sliding(std::span<const Chunk> chunks, model::ContactSet& out) {
+  out.sliding.clear();
+  auto pair = out.pairs.begin();
+  for (const Chunk& chunk : chunks) {
+    std::uint32_t k = 0;
+    for (const Chunk::Slid& slid : chunk.slid) {
+      while (pair->body_a != slid.pair.body_a || pair->body_b != slid.pair.body_b) ++pair;
+      for (; k < slid.end; ++k) {
+        out.sliding.push_back(chunk.contacts.sliding[k]);
+        out.sliding.back().contact += pair->begin;
+      }
+    }
+  }
 }
 
 /// The broad phase pairs bodies by the world's fastest. Drops pairs of shapes whose spheres are
@@ -315,6 +342,7 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
   parallel_for(count, 1, [&](std::size_t c) {
     Chunk& chunk = storage.chunks[c];
     chunk.contacts.clear();
+    chunk.slid.clear();
     chunk.tests.fill(0);
     const std::size_t end = std::min(pairs, (c + 1) * size);
     if (surface) {
@@ -326,7 +354,11 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
         NearPair& near = storage.pool[storage.known[p].near];
         if (anchored) {
           refresh_anchor(bodies, shapes, storage.exact, margin, options, scratch, &near,
-                         storage.anchor[p]);
+                         storage.anchor[p], chunk.contacts.sliding);
+          const auto slid = static_cast<std::uint32_t>(chunk.contacts.sliding.size());
+          if (chunk.slid.empty() ? slid > 0 : slid > chunk.slid.back().end) {
+            chunk.slid.push_back({storage.candidates[p], slid});
+          }
         } else {
           append_surface_contacts(bodies, storage.candidates[p], shapes, storage.exact, margin,
                                   options, scratch, chunk.contacts, &near);
@@ -348,6 +380,7 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
   if (anchored) {
     storage.give_anchors(*options.anchors);
     take_from_anchors(bodies, *options.anchors, out);
+    take_sliding(std::span(storage.chunks).first(count), out);
   } else {
     join(std::span(storage.chunks).first(count), out);
   }

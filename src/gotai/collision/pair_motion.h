@@ -39,6 +39,8 @@ class PairMotion {
     fastest_ = v_A_.norm() + w_A_.norm() * bodies.bounding_radius[a];
   }
 
+  /// How a moves along b.
+  SlipField slip() const { return {v_A_, w_A_}; }
   /// Diameter about the smaller body.
   double size() const { return size_; }
   /// Gap up to which contacts at rest may carry.

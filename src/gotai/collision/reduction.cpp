@@ -90,25 +90,37 @@ class Chooser {
   }
 
   // Areas and their centres go to the nearest kept contacts.
-  void share() {
+  void share(const SlipField* slip) {
     for (ContactCandidate& c : candidates_) c.share_A = c.point_A;
     const double lever = lever_arm(candidates_.size(), [](std::size_t i) { return i; });
     std::array<Vec3, kMaxReduced> centre;
     std::array<double, kMaxReduced> area{};
+    Vec3 normal = Vec3::Zero();
+    double total = 0.0;
     centre.fill(Vec3::Zero());
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
-      ContactCandidate& c = candidates_[i];
+      const ContactCandidate& c = candidates_[i];
       centre[lanes_.nearest[i]] += c.area * c.point_A;
       area[lanes_.nearest[i]] += c.area;
-      c.area = 0.0;
+      normal += c.area * c.normal_A;
+      total += c.area;
     }
+    // On other patches lever arms and directions of slip mean nothing.
+    constexpr double kFlat = 0.95;
+    const bool flat = normal.norm() >= kFlat * total && lever > 0.0;
+    SharesFriction shares;
+    // What does not touch yet has no friction.
+    const bool slides = flat && slip != nullptr && candidates_[deepest_].gap <= scale_.reach &&
+                        find_sliding_shares(candidates_, lanes_, normal.normalized(), lever, *slip,
+                                            reduction_.kept.size(), shares);
+    for (ContactCandidate& c : candidates_) c.area = 0.0;
     for (std::size_t k = 0; k < reduction_.kept.size(); ++k) {
       ContactCandidate& c = candidates_[reduction_.kept[k]];
       c.share_A = centre[k] / area[k];
       c.area = area[k];
     }
-    std::sort(reduction_.kept.begin(), reduction_.kept.end());
-    restore_lever(lever);
+    if (flat) restore_lever(lever);
+    sort_kept(shares, slides);
   }
 
  private:
@@ -133,23 +145,28 @@ class Chooser {
     return sum / area;
   }
 
-  // The centres of shares are nearer to the middle than what they stand for. On a flat patch they
-  // move out until friction has its lever arm back; on others that means nothing.
+  // The centres of shares are nearer to the middle than what they stand for: they move out until
+  // friction has its lever arm back.
   void restore_lever(double lever) {
-    constexpr double kFlat = 0.95;
     constexpr double kMostStretch = 1.5;
-    Vec3 normal = Vec3::Zero();
-    double area = 0.0;
-    for (const std::uint32_t k : reduction_.kept) {
-      normal += candidates_[k].area * candidates_[k].normal_A;
-      area += candidates_[k].area;
-    }
     const double shares =
         lever_arm(reduction_.kept.size(), [&](std::size_t k) { return reduction_.kept[k]; });
-    if (normal.norm() < kFlat * area || !(shares > 0.0)) return;
+    if (!(shares > 0.0)) return;
     const double stretch = std::clamp(lever / shares, 1.0, kMostStretch);
     for (const std::uint32_t k : reduction_.kept) {
       candidates_[k].share_A = centre_ + stretch * (candidates_[k].share_A - centre_);
+    }
+  }
+
+  // Ascending; until now they were in the order of their choice.
+  void sort_kept(const SharesFriction& shares, bool slides) {
+    std::array<std::uint32_t, kMaxReduced> chosen;
+    std::copy(reduction_.kept.begin(), reduction_.kept.end(), chosen.begin());
+    std::sort(reduction_.kept.begin(), reduction_.kept.end());
+    if (!slides) return;
+    for (const std::uint32_t k : reduction_.kept) {
+      const auto at = std::find(chosen.begin(), chosen.end(), k) - chosen.begin();
+      reduction_.sliding.push_back(shares[static_cast<std::size_t>(at)]);
     }
   }
 
@@ -166,14 +183,15 @@ class Chooser {
 
 void reduce_contacts(std::span<ContactCandidate> candidates,
                      std::span<const model::ContactMemory::Entry> remembered,
-                     const ReductionScale& scale, Reduction& reduction) {
+                     const ReductionScale& scale, Reduction& reduction, const SlipField* slip) {
   Chooser chooser(candidates, scale, reduction);
   reduction.error = 0.0;
+  reduction.sliding.clear();
   if (candidates.empty()) return;
   chooser.keep_remembered(remembered);
   chooser.keep_deepest();
   chooser.keep_farthest();
-  chooser.share();
+  chooser.share(slip);
 }
 
 }  // namespace gotai::collision

@@ -9,27 +9,12 @@
 #include <span>
 #include <vector>
 
+#include "gotai/collision/sliding_shares.h"
 #include "gotai/collision/wrench_lanes.h"
-#include "gotai/core/types.h"
 #include "gotai/model/contact_memory.h"
-#include "gotai/model/contact_set.h"
 
 namespace gotai::collision {
 
-/// A contact of two bodies in the frame of one of them, before it is known whether it is kept.
-/// Frame A: axes of body a, origin at its centre of mass.
-struct ContactCandidate {
-  Vec3 point_A = Vec3::Zero();   ///< on body a [m]
-  Vec3 normal_A = Vec3::Zero();  ///< unit, from b to a
-  double gap = 0.0;              ///< [m]; the point on b is point_A - gap normal_A
-  double area = 0.0;             ///< [m^2], > 0
-  /// Centre of the surface it stands for [m]; friction acts there.
-  Vec3 share_A = Vec3::Zero();
-  model::FeatureKey feature = 0;
-  bool near_edge = false;  ///< the field is not smooth there: its distance is rounded
-};
-
-inline constexpr std::size_t kMaxReduced = 8;  ///< contacts kept per pair
 inline constexpr std::size_t kMaxRemembered = 5;
 
 /// Sizes that a reduction works with.
@@ -47,6 +32,8 @@ struct Reduction {
   /// Every unit wrench of a candidate, (normal, arm x normal / length), is nearer than this to one
   /// that is kept: the error of any load is at most this times the sum of its impulses.
   double error = 0.0;
+  /// Of the kept contacts, if the patch is flat and slides; otherwise empty.
+  std::vector<ShareFriction> sliding;
   WrenchLanes lanes;
 };
 
@@ -58,8 +45,10 @@ struct Reduction {
 /// @param[in,out] candidates  ascending by feature; area and share_A of kept ones are updated,
 ///                            the areas of others become 0
 /// @param remembered          the pair's entries of the last step, ascending by feature
+/// @param slip                how the bodies move; null: nothing slides
 void reduce_contacts(std::span<ContactCandidate> candidates,
                      std::span<const model::ContactMemory::Entry> remembered,
-                     const ReductionScale& scale, Reduction& reduction);
+                     const ReductionScale& scale, Reduction& reduction,
+                     const SlipField* slip = nullptr);
 
 }  // namespace gotai::collision

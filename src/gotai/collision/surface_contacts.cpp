@@ -97,11 +97,12 @@ bool is_still_apart(const NearPair& near, const BodyState& bodies, const BodyPai
 // Keeps few candidates.
 void reduce_candidates(const BodyPair& pair, const SearchOptions& options, const PairMotion& motion,
                        SurfaceScratch& scratch) {
+  const SlipField slip = motion.slip();
   reduce_contacts(scratch.candidates, remembered(options.memory, pair),
                   {.length = motion.size(),
                    .depth_step = kDepthStep * motion.size(),
                    .reach = motion.rest_reach()},
-                  scratch.reduction);
+                  scratch.reduction, options.dt > 0.0 ? &slip : nullptr);
   scratch.reduction_error = std::max(scratch.reduction_error, scratch.reduction.error);
 }
 
@@ -192,6 +193,23 @@ void anchor_kept(const BodyState& bodies, double reach, const SurfaceScratch& sc
   }
 }
 
+// Where friction acts on what slides: of a search in a step, not of its anchors, which outlast the
+// slip.
+void emit_sliding(const BodyState& bodies, const BodyPair& pair, const SurfaceScratch& scratch,
+                  std::uint32_t begin, std::vector<model::SlidingShare>& out) {
+  const Reduction& reduction = scratch.reduction;
+  if (reduction.sliding.empty()) return;
+  const Mat3 R_WA = bodies.q_WB[pair.body_a].toRotationMatrix();
+  for (std::uint32_t k = 0; k < reduction.kept.size(); ++k) {
+    const ContactCandidate& c = scratch.candidates[reduction.kept[k]];
+    const ShareFriction& share = reduction.sliding[k];
+    // Like the contact itself, half-way between the bodies.
+    const Vec3 origin = bodies.x_W[pair.body_a] - R_WA * ((0.5 * c.gap) * c.normal_A);
+    out.push_back({begin + k, share.area, share.alignment, origin + R_WA * share.centre_A,
+                   origin + R_WA * share.point_A});
+  }
+}
+
 }  // namespace
 
 void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
@@ -209,6 +227,7 @@ void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shap
     for (const std::uint32_t k : scratch.reduction.kept) {
       emit(bodies, pair, scratch.candidates[k], R_WA, R_WB, out);
     }
+    emit_sliding(bodies, pair, scratch, begin, out.sliding);
   } else {
     for (const ContactCandidate& c : scratch.candidates) emit(bodies, pair, c, R_WA, R_WB, out);
   }
@@ -216,7 +235,8 @@ void append_surface_contacts(const BodyState& bodies, const BodyPair& pair, Shap
 
 void refresh_anchor(const BodyState& bodies, Shapes shapes, ExactSurfaces exact, double margin,
                     const SearchOptions& options, SurfaceScratch& scratch, NearPair* near,
-                    model::ContactAnchors::Pair& anchor) {
+                    model::ContactAnchors::Pair& anchor,
+                    std::vector<model::SlidingShare>& sliding) {
   const BodyPair pair{anchor.body_a, anchor.body_b};
   const PairMotion motion(bodies, pair, options.dt);
   const double needed = motion.reach(margin);
@@ -224,7 +244,9 @@ void refresh_anchor(const BodyState& bodies, Shapes shapes, ExactSurfaces exact,
   anchor.contacts.clear();
   const double reach = needed + kAnchorTolerance * motion.size();
   find_candidates(bodies, pair, shapes, exact, reach, motion, options, scratch, near);
-  if (!scratch.candidates.empty()) anchor_kept(bodies, reach, scratch, anchor);
+  if (scratch.candidates.empty()) return;
+  anchor_kept(bodies, reach, scratch, anchor);
+  emit_sliding(bodies, pair, scratch, 0, sliding);
 }
 
 }  // namespace gotai::collision

@@ -60,9 +60,12 @@ void append_surface_contacts(const model::BodyState& bodies, const BodyPair& pai
 /// The same for `reduced` in a step, with contacts that stay while the pair hardly moves: while it
 /// is near its anchor nothing is searched, otherwise the anchor is set anew.
 /// @param anchor  of the pair; without contacts: nothing is known, or the bodies are apart
+/// @param[in,out] sliding  appended to when a pair that slides is searched; contacts are counted
+///                         within the pair
 void refresh_anchor(const model::BodyState& bodies,
                     std::span<const std::shared_ptr<const voxel::Shape>> shapes,
                     ExactSurfaces exact, double margin, const SearchOptions& options,
-                    SurfaceScratch& scratch, NearPair* near, model::ContactAnchors::Pair& anchor);
+                    SurfaceScratch& scratch, NearPair* near, model::ContactAnchors::Pair& anchor,
+                    std::vector<model::SlidingShare>& sliding);
 
 }  // namespace gotai::collision

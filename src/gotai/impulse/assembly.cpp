@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gotai/impulse/contact_kinematics.h"
+#include "gotai/impulse/sliding.h"
 
 namespace gotai::impulse {
 
@@ -13,6 +14,7 @@ void read_targets(const model::BodyState& bodies, const model::ContactSet& conta
   targets.approach.resize(contacts.size());
   targets.restitution.resize(contacts.size());
   targets.friction.resize(contacts.size());
+  targets.friction_W = contacts.friction_W;
   for (const model::ContactPair& pair : contacts.pairs) {
     const model::SurfacePair surface =
         materials.combine(bodies.material[pair.body_a], bodies.material[pair.body_b]);
@@ -21,6 +23,18 @@ void read_targets(const model::BodyState& bodies, const model::ContactSet& conta
       targets.approach[i] = motion.along(contacts.normal_W[i], contacts.point_W[i]);
       targets.restitution[i] = surface.restitution;
       targets.friction[i] = surface.friction;
+    }
+  }
+}
+
+void slide_friction(const model::BodyState& bodies, const model::ContactSet& contacts,
+                    double stopping_speed, ContactTargets& targets) {
+  for (const model::ContactPair& pair : contacts.pairs) {
+    const auto shares = sliding_shares(contacts, pair);
+    if (shares.empty() || !is_sliding(bodies, contacts, pair, stopping_speed)) continue;
+    for (const model::SlidingShare& share : shares) {
+      targets.friction[share.contact] *= share.alignment;
+      targets.friction_W[share.contact] = share.point_W;
     }
   }
 }
@@ -71,7 +85,7 @@ void assemble(const model::BodyState& bodies, const model::ContactSet& contacts,
     const auto block = static_cast<std::uint32_t>(at - island.bodies.begin());
     problem.couplings.push_back(
         {block, mass_scaled_jacobian(frame.back(), contacts.point_W[i] - bodies.x_W[body],
-                                     contacts.friction_W[i] - bodies.x_W[body],
+                                     targets.friction_W[i] - bodies.x_W[body],
                                      bodies.inverse_mass[body], scale[block], sign)});
   };
   problem.patch.push_back(0);
@@ -97,7 +111,7 @@ void assemble(const model::BodyState& bodies, const model::ContactSet& contacts,
         };
         bias.x() += sign * frame.back().col(0).dot(velocity(contacts.point_W[i]));
         bias.tail<2>() +=
-            sign * (frame.back().rightCols<2>().transpose() * velocity(contacts.friction_W[i]));
+            sign * (frame.back().rightCols<2>().transpose() * velocity(targets.friction_W[i]));
       }
       problem.bias.push_back(bias);
       problem.friction.push_back(targets.friction[i]);

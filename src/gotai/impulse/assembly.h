@@ -18,13 +18,20 @@ namespace gotai::impulse {
 struct ContactTargets {
   std::vector<double> approach;     ///< normal relative velocity before gravity, V [m/s]
   std::vector<double> restitution;  ///< e of the two materials
-  std::vector<double> friction;     ///< mu of the two materials
+  std::vector<double> friction;     ///< mu of the two materials, less where shares slide
+  std::vector<Vec3> friction_W;     ///< where friction acts [m], W
 };
 
-/// Reads V, e and mu of every contact.
+/// Reads V, e, mu and where friction acts of every contact.
 /// @param bodies  velocities before gravity
 void read_targets(const model::BodyState& bodies, const model::ContactSet& contacts,
                   const model::MaterialTable& materials, ContactTargets& targets);
+
+/// Moves friction to where the resultants of sliding shares act, and limits it to them.
+/// @param bodies          velocities before gravity
+/// @param stopping_speed  |g| dt: what slips faster slides [m/s]
+void slide_friction(const model::BodyState& bodies, const model::ContactSet& contacts,
+                    double stopping_speed, ContactTargets& targets);
 
 /// Velocity that is added to the normal row of a contact, so that it ends with v' >= -bias [m/s].
 ///   gap <= 0   e min(v, 0): bounces off what it hits, no inward push for separating contacts

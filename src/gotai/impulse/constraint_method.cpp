@@ -23,6 +23,7 @@ void ConstraintMethod::prepare(const model::BodyState& bodies, const model::Cont
   contacts_ = &contacts;
   dt_ = plan.dt;
   read_targets(bodies, contacts, materials, targets_);
+  slide_friction(bodies, contacts, settings_.gravity.norm() * plan.dt, targets_);
   islands_.prepare(bodies, contacts, memory);
 }
 

@@ -61,7 +61,7 @@ void IslandSolver::solve(const model::BodyState& bodies, const ContactTargets& t
         add_impulse(bodies, pair, contacts_->point_W[i], impulse, update);
         // Friction acts elsewhere when the contact stands for others.
         const Vec3 friction = impulse - work.frame[row].col(0) * work.solution.p[row].x();
-        const Vec3 moment = (contacts_->friction_W[i] - contacts_->point_W[i]).cross(friction);
+        const Vec3 moment = (targets.friction_W[i] - contacts_->point_W[i]).cross(friction);
         if (bodies.is_dynamic(pair.body_a)) update.delta_L[pair.body_a] += moment;
         if (bodies.is_dynamic(pair.body_b)) update.delta_L[pair.body_b] -= moment;
       }

@@ -19,6 +19,7 @@ void SemMethod::prepare(const model::BodyState& bodies, const model::ContactSet&
   targets_.approach.assign(contacts.size(), 0.0);
   targets_.restitution.assign(contacts.size(), 0.0);
   targets_.friction.assign(contacts.size(), ConeProblem::unlimited);
+  targets_.friction_W = contacts.friction_W;
   islands_.prepare(bodies, contacts, memory);
 }
 

@@ -188,12 +188,28 @@ HWY_INLINE V normal_velocity(std::size_t l, const ContactRow& row, const Motion&
          dot(load(row.j_b, l), m.w_b);
 }
 
+/// Sum of the normal impulses of pairs.
+HWY_INLINE V pooled_load(const SoftProblem& problem, const PairBatch& batch, std::size_t l) {
+  V sum = zero();
+  for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
+    sum = sum + load(problem.rows[r].p_n, l);
+  return sum;
+}
+
+/// What limits the friction of a row.
+/// @param pooled  pooled_load(), if any pair of the batch pools
+HWY_INLINE V limiting_load(const PairBatch& batch, std::size_t l, const ContactRow& row, V pooled) {
+  const V own = load(row.p_n, l);
+  if (!batch.pools_any) return own;
+  return hn::IfThenElse(hn::Gt(load(batch.pools_load, l), zero()), pooled, own);
+}
+
 /// Friction of the lanes in `active`: the exact 2x2 stick solution where that is in the cone. Else
 /// a step against the slip, the same along both tangents, then onto the cone: friction must oppose
 /// the slip, and the stick solution's direction does not where contacts turn the bodies more easily
 /// than they shift them.
 template <typename Mask>
-HWY_INLINE void solve_friction(const PairBatch& batch, std::size_t l, ContactRow& row,
+HWY_INLINE void solve_friction(const PairBatch& batch, std::size_t l, ContactRow& row, V pooled,
                                const Mask& active, Motion& m) {
   const V3 n = load(row.n, l);
   const V3 t1 = load(row.t, l);
@@ -207,7 +223,7 @@ HWY_INLINE void solve_friction(const PairBatch& batch, std::size_t l, ContactRow
   const V old_2 = load(row.p_2, l);
   const V stick_1 = old_1 - (load(row.k11, l) * s1 + k12 * s2);
   const V stick_2 = old_2 - (k12 * s1 + load(row.k22, l) * s2);
-  const V limit = load(batch.friction, l) * load(row.p_n, l);
+  const V limit = load(row.friction, l) * limiting_load(batch, l, row, pooled);
   const auto slides = hn::Gt(stick_1 * stick_1 + stick_2 * stick_2, limit * limit);
   const V mass = load(row.mass_t, l);
   const V slide_1 = old_1 - mass * s1;
@@ -366,8 +382,9 @@ HWY_INLINE void sweep(const SoftProblem& problem, std::size_t first, std::size_t
   const V inverse_h = hn::Set(d, 1.0F) / hn::Set(d, problem.h);
   const auto everywhere = hn::FirstN(d, kLanes);
   for_each_group(problem, first, count, [&](const PairBatch& batch, std::size_t l, Motion& m) {
+    const V pooled = batch.pools_any ? pooled_load(problem, batch, l) : zero();
     for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
-      solve_friction(batch, l, problem.rows[r], everywhere, m);
+      solve_friction(batch, l, problem.rows[r], pooled, everywhere, m);
     for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r) {
       ContactRow& row = problem.rows[r];
       solve_normal<kBiased>(batch, l, row, inverse_h, m);
@@ -418,13 +435,14 @@ void Restitution(const SoftProblem& problem, std::size_t first, std::size_t coun
       }
       // The impulse that throws bodies apart has its friction, too; normals have the last word.
       if (visit + 1 == kVisitsPerRestitution) break;
+      const V pooled = batch.pools_any ? pooled_load(problem, batch, l) : zero();
       for (std::uint32_t k = 0; k < count_rows; ++k) {
         ContactRow& row = rows[batch.row_begin + k];
         const auto bouncing = bounces(row);
         if (hn::AllFalse(Tag(), bouncing)) continue;
         const V old_1 = load(row.p_1, l);
         const V old_2 = load(row.p_2, l);
-        solve_friction(batch, l, row, bouncing, m);
+        solve_friction(batch, l, row, pooled, bouncing, m);
         store(load(row.total_1, l) + (load(row.p_1, l) - old_1), row.total_1, l);
         store(load(row.total_2, l) + (load(row.p_2, l) - old_2), row.total_2, l);
       }

@@ -48,12 +48,14 @@ struct PairBatch {
   Lane3 offset;                          ///< centre of mass of a minus that of b [m], W
   Lane inverse_mass_a, inverse_mass_b;   ///< [1/kg]
   LaneInertia inverse_I_a, inverse_I_b;  ///< [1/(kg m^2)], W
-  Lane friction;
   Lane restitution;
   Lane bias_rate;      ///< share of the overlap that is recovered per second [1/s]
   Lane mass_scale;     ///< softness of the constraint, in (0, 1]
   Lane impulse_scale;  ///< its memory loss, in [0, 1)
   Lane push_limit;     ///< largest recovery speed [m/s]
+  /// 1: the pair slides on shares of a patch, whose friction depends on all that presses the pair.
+  Lane pools_load;
+  bool pools_any = false;  ///< some lane does
 };
 
 /// One contact of each of the pairs of a batch. Missing contacts have n = 0.
@@ -63,6 +65,7 @@ struct ContactRow {
   Lane3 j_b;           ///< arm on b x normal [m]; written by prepare
   Lane3 t;             ///< first tangent, the second is n x t; written by prepare
   Lane3 f_a;           ///< arm of the friction force on a [m]
+  Lane friction;       ///< its limit as a fraction of p_n, or of all p_n of a pair that pools them
   Lane gap;            ///< [m]; changed by advance_gaps
   Lane mass_n;         ///< 1 / (n . K n) [kg], 0 for missing contacts; written by prepare
   Lane k11, k12, k22;  ///< inverse of the 2x2 tangential K [kg]; written by prepare

@@ -6,6 +6,7 @@
 
 #include "gotai/core/parallel.h"
 #include "gotai/impulse/lanes.h"
+#include "gotai/impulse/sliding.h"
 
 namespace gotai::impulse {
 namespace {
@@ -80,18 +81,15 @@ void SubsteppedConstraint::prepare(const model::BodyState& bodies,
                                    const model::ContactMemory& memory) {
   contacts_ = &contacts;
   plan_ = plan;
+  substep_ = 0;
   lay_out_batches(bodies);
   find_memories(memory);
   read_velocities(bodies);
   parallel_for(batches_.size(), kBatchGrain, [&](std::size_t k) {
-    fill_batch(k, bodies, materials);
-    const PairBatch& batch = batches_[k];
-    for (std::uint32_t lane = 0; lane < batch.lanes; ++lane)
-      fill_rows(schedule_->pair[in_batch_[k].first_pair + lane], lane, batch.row_begin, bodies,
-                memory);
+    fill_batch(k, bodies, materials, memory);
     soft_pass(SoftPass::prepare, problem(), k, 1);
   });
-  share_loads(bodies);
+  share_loads();
   report_ = {};
   report_.rows = static_cast<std::uint32_t>(contacts.size());
   report_.substeps = static_cast<std::uint32_t>(plan.substeps);
@@ -108,6 +106,7 @@ void SubsteppedConstraint::lay_out_batches(const model::BodyState& bodies) {
   batches_.clear();
   in_batch_.clear();
   slots_.resize(contacts_->size());
+  is_sliding_.resize(contacts_->pairs.size());
   for (std::vector<Range>& waves : waves_) waves.clear();
   std::uint32_t rows = 0;
   std::size_t kind = 0;
@@ -136,14 +135,16 @@ void SubsteppedConstraint::lay_out_batches(const model::BodyState& bodies) {
 }
 
 void SubsteppedConstraint::fill_batch(std::size_t k, const model::BodyState& bodies,
-                                      const model::MaterialTable& materials) {
+                                      const model::MaterialTable& materials,
+                                      const model::ContactMemory& memory) {
   const double h = plan_.substep_dt();
   const double frequency_hz = kEffort[in_batch_[k].kind].frequency_share / h;
   const Softness moving = softness(frequency_hz, h);
   const Softness fixed = softness(2.0 * frequency_hz, h);
   PairBatch& batch = batches_[k];
   for (std::uint32_t l = 0; l < batch.lanes; ++l) {
-    const model::ContactPair& pair = contacts_->pairs[schedule_->pair[in_batch_[k].first_pair + l]];
+    const std::uint32_t p = schedule_->pair[in_batch_[k].first_pair + l];
+    const model::ContactPair& pair = contacts_->pairs[p];
     const model::BodyIndex a = pair.body_a;
     const model::BodyIndex b = pair.body_b;
     batch.body_a[l] = a + 1;
@@ -156,7 +157,6 @@ void SubsteppedConstraint::fill_batch(std::size_t k, const model::BodyState& bod
     set(batch.inverse_I_a, l, bodies.inverse_I_W[a]);
     set(batch.inverse_I_b, l, bodies.inverse_I_W[b]);
     const model::SurfacePair surface = materials.combine(bodies.material[a], bodies.material[b]);
-    set(batch.friction, l, surface.friction);
     set(batch.restitution, l, surface.restitution);
     const bool both_move = bodies.is_dynamic(a) && bodies.is_dynamic(b);
     const Softness& soft = both_move ? moving : fixed;
@@ -167,20 +167,23 @@ void SubsteppedConstraint::fill_batch(std::size_t k, const model::BodyState& bod
     const double size = both_move ? std::min(bodies.bounding_radius[a], bodies.bounding_radius[b])
                                   : std::max(bodies.bounding_radius[a], bodies.bounding_radius[b]);
     set(batch.push_limit, l, 6.0 * size);
+    fill_rows(p, l, batch.row_begin, surface.friction, bodies.x_W[a], memory);
+    is_sliding_[p] = is_sliding(bodies, *contacts_, pair, settings_.gravity.norm() * plan_.dt);
+    if (is_sliding_[p]) slide(pair, surface.friction, bodies.x_W[a]);
   }
 }
 
 void SubsteppedConstraint::fill_rows(std::uint32_t p, std::size_t lane, std::uint32_t row_begin,
-                                     const model::BodyState& bodies,
+                                     double friction, const Vec3& x_a,
                                      const model::ContactMemory& memory) {
   const model::ContactPair& pair = contacts_->pairs[p];
-  const Vec3& x_a = bodies.x_W[pair.body_a];
   auto [m, end] = memory_of_[p];
   for (std::uint32_t c = pair.begin; c < pair.end; ++c) {
     ContactRow& row = rows_[row_begin + (c - pair.begin)];
     set(row.n, lane, contacts_->normal_W[c]);
     set(row.j_a, lane, contacts_->point_W[c] - x_a);
     set(row.f_a, lane, contacts_->friction_W[c] - x_a);
+    set(row.friction, lane, friction);
     set(row.gap, lane, contacts_->gap[c]);
     while (m < end && memory.entries[m].feature < contacts_->feature[c]) ++m;
     if (m == end || memory.entries[m].feature != contacts_->feature[c]) continue;
@@ -261,6 +264,7 @@ void SubsteppedConstraint::run_passes() {
 void SubsteppedConstraint::solve(const model::BodyState& bodies, const std::vector<double>& /*gap*/,
                                  model::Update& update) {
   read_velocities(bodies);
+  if (substep_++ == 1 && !contacts_->sliding.empty()) press_shares();
   for (std::size_t kind = 0; kind < kIslandKinds; ++kind) {
     add_waves(kind, SoftPass::warm_start);
     for (std::uint32_t n = 0; n < kEffort[kind].biased_sweeps; ++n)

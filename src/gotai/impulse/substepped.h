@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "gotai/impulse/contact_schedule.h"
@@ -58,9 +59,11 @@ class SubsteppedConstraint final : public ImpulseMethod {
 
   void lay_out_batches(const model::BodyState& bodies);
   void fill_batch(std::size_t k, const model::BodyState& bodies,
-                  const model::MaterialTable& materials);
-  void fill_rows(std::uint32_t p, std::size_t lane, std::uint32_t row_begin,
-                 const model::BodyState& bodies, const model::ContactMemory& memory);
+                  const model::MaterialTable& materials, const model::ContactMemory& memory);
+  void fill_rows(std::uint32_t p, std::size_t lane, std::uint32_t row_begin, double friction,
+                 const Vec3& x_a, const model::ContactMemory& memory);
+  /// Moves the friction of a pair that slides to where the resultants of its shares act.
+  void slide(const model::ContactPair& pair, double friction, const Vec3& x_a);
   /// Where the entries of every pair are in the memory.
   void find_memories(const model::ContactMemory& memory);
   void remember(model::ContactMemory& memory);
@@ -71,8 +74,19 @@ class SubsteppedConstraint final : public ImpulseMethod {
   /// area: redundant contacts share the load, as under a uniform tiny compliance (erratum 23).
   /// Only of pairs that slide: there pressure decides the torque of friction. At rest it would
   /// disturb what the solver has found, and piles would creep.
-  void share_loads(const model::BodyState& bodies);
+  void share_loads();
   void share_load(const model::ContactPair& pair);
+  /// Lets the friction of sliding shares follow the pressure on the shares instead of that on their
+  /// contacts, which are beside their centres, and move load among each other as they are swept:
+  /// each gets its fraction of all that presses the pair, of the same wrench and even by area. Once
+  /// a step, after the first sub-step: what contacts remember lacks those that are not kept again.
+  void press_shares();
+  /// The same of one pair. @return false if nothing presses it
+  bool press_shares(const model::ContactPair& pair, std::span<const model::SlidingShare> shares);
+  /// Of the sub-step to come [N s].
+  double normal_impulse(std::uint32_t contact) const {
+    return rows_[slots_[contact].row].p_n.value[slots_[contact].lane];
+  }
   /// Shifts a sliding pair's friction so that its centre is that of the pressure: the points that
   /// friction acts at stand for areas, and under uneven pressure they would turn the body.
   void centre_friction(const model::ContactPair& pair);
@@ -88,6 +102,7 @@ class SubsteppedConstraint final : public ImpulseMethod {
 
   model::Settings settings_;
   model::StepPlan plan_;
+  int substep_ = 0;
   model::SolveReport report_;
   const model::ContactSet* contacts_ = nullptr;
   ContactScheduler scheduler_;
@@ -97,11 +112,12 @@ class SubsteppedConstraint final : public ImpulseMethod {
   std::array<std::vector<Range>, kIslandKinds> waves_;  // of batches_, by IslandKind
   std::vector<Stage<SoftPass>> stages_;
   std::vector<ContactRow> rows_;
-  std::vector<Slot> slots_;              // per contact
-  std::vector<Range> memory_of_;         // per pair, into the memory
-  std::vector<std::uint32_t> entry_of_;  // per pair + 1: first entry of the next step's memory
-  std::vector<SoftBody> velocity_;       // working copy; entry 0 is padding, body i is entry i + 1
-  std::vector<SoftBody> before_;         // as read from the state
+  std::vector<Slot> slots_;               // per contact
+  std::vector<std::uint8_t> is_sliding_;  // per pair
+  std::vector<Range> memory_of_;          // per pair, into the memory
+  std::vector<std::uint32_t> entry_of_;   // per pair + 1: first entry of the next step's memory
+  std::vector<SoftBody> velocity_;        // working copy; entry 0 is padding, body i is entry i + 1
+  std::vector<SoftBody> before_;          // as read from the state
 };
 
 }  // namespace gotai::impulse

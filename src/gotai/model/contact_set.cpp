@@ -17,6 +17,7 @@ void ContactSet::clear() {
   friction_W.clear();
   area.clear();
   feature.clear();
+  sliding.clear();
 }
 
 void ContactSet::resize(std::size_t count) {
@@ -88,6 +89,13 @@ void validate(const ContactSet& contacts, std::size_t body_count) {
     }
   }
   if (expected_begin != n) throw SimulationError("contacts without a pair");
+  for (std::size_t k = 0; k < contacts.sliding.size(); ++k) {
+    const SlidingShare& share = contacts.sliding[k];
+    if (share.contact >= n || (k > 0 && contacts.sliding[k - 1].contact >= share.contact) ||
+        !(share.area > 0.0) || !(share.alignment >= 0.0 && share.alignment <= 1.0) ||
+        !share.point_W.allFinite())
+      throw SimulationError("sliding share " + std::to_string(k) + " is not valid");
+  }
 }
 
 }  // namespace gotai::model

@@ -24,6 +24,18 @@ struct ContactPair {
   std::uint32_t size() const { return end - begin; }
 };
 
+/// Friction of a share of a flat patch that slides under even pressure. The resultant of friction
+/// that opposes the slip of every part of it acts at one point, which slips in the resultant's
+/// direction, and is smaller than if all parts slipped the same way [Contensou 1963, "Couplage
+/// entre frottement de glissement et frottement de pivotement dans la theorie de la toupie"].
+struct SlidingShare {
+  std::uint32_t contact = 0;     ///< that stands for the share
+  double area = 0.0;             ///< of the share [m^2], > 0
+  double alignment = 1.0;        ///< length of the mean direction of slip, in [0, 1]
+  Vec3 centre_W = Vec3::Zero();  ///< of the share [m], W
+  Vec3 point_W = Vec3::Zero();   ///< where the resultant acts [m], W
+};
+
 /// Structure of arrays, grouped by pair, within a pair sorted by feature. Written by collision.
 struct ContactSet {
   std::vector<ContactPair> pairs;
@@ -38,6 +50,9 @@ struct ContactSet {
                                     ///< contact stands for [m], W; point_W unless reduced
   std::vector<double> area;         ///< surface that the contact stands for [m^2]; spheres: 1
   std::vector<FeatureKey> feature;  ///< stable key within the pair
+  /// Of reduced contacts whose pair was searched as it moved, ascending by contact; none for
+  /// others.
+  std::vector<SlidingShare> sliding;
 
   std::size_t size() const { return gap.size(); }
   /// Empties it; storage is kept.
