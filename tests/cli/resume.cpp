@@ -106,9 +106,9 @@ TEST(FullDisk, TheFramesBeforeItAreReadable) {
   const std::string said((std::istreambuf_iterator<char>(in)), {});
   EXPECT_THAT(said, HasSubstr("No space left on device"));
   EXPECT_THAT(said, HasSubstr("exit code 1"));
-  const std::size_t json = said.find('{');
-  ASSERT_NE(json, std::string::npos) << said;
-  const auto info = nlohmann::json::parse(said.substr(json));
+  const std::size_t object = said.find('{');
+  ASSERT_NE(object, std::string::npos) << said;
+  const auto info = nlohmann::json::parse(said.substr(object));
   EXPECT_GT(info.at("frames").get<int>(), 10) << said;
 }
 

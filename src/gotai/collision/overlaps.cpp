@@ -47,8 +47,8 @@ void keep_deepest(std::vector<PairOverlap>& overlaps) {
   std::ranges::sort(overlaps, [&](const PairOverlap& a, const PairOverlap& b) {
     return key(a) != key(b) ? key(a) < key(b) : a.depth > b.depth;
   });
-  const auto rest = std::ranges::unique(overlaps, {}, key);
-  overlaps.erase(rest.begin(), rest.end());
+  const auto is_same = [](const PairOverlap& a, const PairOverlap& b) { return a.pair == b.pair; };
+  overlaps.erase(std::unique(overlaps.begin(), overlaps.end(), is_same), overlaps.end());
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 namespace gotai::collision {
 namespace {
 
-using voxel::kLanes;
 using Lanes = HitLanes::Lanes;
 
 void put(const std::array<float, 3>& v, std::array<Lanes, 3>& to, std::size_t lane) {
@@ -44,14 +43,14 @@ void collect(const NearSurface& near, std::span<const SurfaceHit> hits, HitLanes
   const voxel::SurfaceTree& tree = near.samples.tree;
   to.any_edge = false;
   to.any_bulge = false;
-  std::array<const CurvedSample*, kLanes> bulges{};
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+  std::array<const CurvedSample*, voxel::kLanes> bulges{};
+  for (std::size_t lane = 0; lane < voxel::kLanes; ++lane) {
     const SurfaceHit& hit = hits[std::min(lane, hits.size() - 1)];
     const std::uint32_t s = hit.sample;
-    const voxel::PointPacket& packet = tree.points[s / kLanes];
-    to.point[0][lane] = packet.x[s % kLanes];
-    to.point[1][lane] = packet.y[s % kLanes];
-    to.point[2][lane] = packet.z[s % kLanes];
+    const voxel::PointPacket& packet = tree.points[s / voxel::kLanes];
+    to.point[0][lane] = packet.x[s % voxel::kLanes];
+    to.point[1][lane] = packet.y[s % voxel::kLanes];
+    to.point[2][lane] = packet.z[s % voxel::kLanes];
     to.distance[lane] = hit.distance;
     put(hit.gradient, to.gradient, lane);
     put(tree.normal[s], to.axis, lane);
@@ -65,7 +64,7 @@ void collect(const NearSurface& near, std::span<const SurfaceHit> hits, HitLanes
     to.any_bulge |= bulges[lane] != nullptr;
   }
   if (!to.any_bulge) return;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+  for (std::size_t lane = 0; lane < voxel::kLanes; ++lane) {
     if (bulges[lane] != nullptr) {
       put_bulge(*bulges[lane], to, lane);
     } else {
@@ -82,7 +81,7 @@ void append_lanes(const NearSurface& near, std::span<const SurfaceHit> hits,
                   const CandidateLanes& from, std::vector<ContactCandidate>& out) {
   const voxel::SurfaceTree& tree = near.samples.tree;
   std::uint32_t mask = from.counts;
-  if (hits.size() < kLanes) mask &= (1U << hits.size()) - 1U;
+  if (hits.size() < voxel::kLanes) mask &= (1U << hits.size()) - 1U;
   for (; mask != 0U; mask &= mask - 1U) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(mask));
     const std::uint32_t s = hits[lane].sample;
@@ -103,14 +102,14 @@ void append_lanes(const NearSurface& near, std::span<const SurfaceHit> hits,
 void append_candidates(const NearSurface& near, std::span<const SurfaceHit> hits, float margin,
                        const Closing& closing, CandidateScratch& scratch,
                        std::vector<ContactCandidate>& out, Kernel kernel) {
-  const std::size_t packets = (hits.size() + kLanes - 1) / kLanes;
+  const std::size_t packets = (hits.size() + voxel::kLanes - 1) / voxel::kLanes;
   if (scratch.hits.size() < packets) {
     scratch.hits.resize(packets);
     scratch.candidates.resize(packets);
   }
   const auto part = [&](std::size_t i) {
-    const std::size_t first = i * kLanes;
-    return hits.subspan(first, std::min<std::size_t>(kLanes, hits.size() - first));
+    const std::size_t first = i * voxel::kLanes;
+    return hits.subspan(first, std::min<std::size_t>(voxel::kLanes, hits.size() - first));
   };
   for (std::size_t i = 0; i < packets; ++i) collect(near, part(i), scratch.hits[i]);
   make_candidates(near, margin, closing, scratch.hits.data(), packets, scratch.candidates.data(),
