@@ -63,10 +63,10 @@ TEST(SurfaceStacks, TenCubesStand) {
   }
 }
 
-// Edge on edge: normals there are ambiguous and push cubes a little aside before they rest.
-TEST(SurfaceStacks, TenCubesExactlyOnEachOtherRest) {
+// Edge on edge, where samples have many normals and the field has no slope to choose among them.
+TEST(SurfaceStacks, TenCubesExactlyOnEachOtherStand) {
   const Stand stand = stack_for_ten_seconds(0.0, 0.0, 5);
-  EXPECT_LT(stand.drift, 3e-3);
+  EXPECT_LT(stand.drift, 1e-3);
   EXPECT_LT(stand.rms_speed, 1e-4);
   EXPECT_LT(stand.gain, 1e-6);
 }

@@ -67,6 +67,21 @@ const std::vector<geometry::GeneratorOptions>& solids() {
 // Everything may close.
 constexpr Closing kAll{{0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F}, 1e9F, 0.0F};
 
+// The slope of Q's field that gives a sample its normal: just beneath it where it is sharp and
+// touches.
+Vec3 slope_for(const NearCase& c, const SurfaceHit& hit) {
+  const double cell = static_cast<double>(c.q.surface.field.cell);
+  const voxel::SurfaceTree& tree = c.p.surface.tree;
+  if (!(tree.cone_cosine[hit.sample] < 0.9F) ||
+      std::abs(static_cast<double>(hit.distance)) >= 0.02 * cell) {
+    return to_double(hit.gradient);
+  }
+  const Vec3 x = sample_point(c.p.surface, hit.sample) - c.p.surface.center;
+  return voxel::evaluate(c.q.surface.field,
+                         c.X_QP * (x - 0.1 * cell * to_double(tree.normal[hit.sample])))
+      .gradient;
+}
+
 TEST(Candidates, AreWhatTheirSampleAndTheFieldSayOneByOne) {
   for (const geometry::GeneratorOptions& options : solids()) {
     NearCase c(options);
@@ -83,7 +98,7 @@ TEST(Candidates, AreWhatTheirSampleAndTheFieldSayOneByOne) {
       const Mat3 R_AP = of_b ? R : Mat3(Mat3::Identity());
       std::size_t k = 0;
       for (const SurfaceHit& hit : c.search.hits) {
-        const Vec3 slope = R.transpose() * to_double(hit.gradient);
+        const Vec3 slope = R.transpose() * slope_for(c, hit);
         const Vec3 d = fit_to_normal_cone(c.p.surface.tree, hit.sample, -slope.normalized());
         const bool is_found =
             k < found.size() && found[k].feature == surface_feature(of_b ? 1 : 0, hit.sample);
