@@ -18,10 +18,10 @@
 //   I(m) - I(x) = sum_ij w_i w_j (phi(m_j) - phi(x_i)) <= sum_ij w_i w_j |m_j - x_i|
 //     <= sqrt(sum_ij w_i w_j |m_j - x_i|^2) = sqrt(|m - x|^2 + V(m) + V(x)),
 // by Jensen; V(x) = sum_i w_i |x_i - x|^2 = s^2 sum t (1 - t) <= 3/4 s^2 for spacing s. So
-//   f(x) <= margin  implies  I(m) - margin <= sqrt(r^2 + 3/4 s_m^2 + 3/4 s_x^2).
+//   f(x) <= margin  implies  I(m) - margin <= sqrt(r^2 + V(m) + 3/4 s_x^2).
 // The clamp of coarse values keeps it: raised values stay >= I_c(x), and lowered ones are >=
 // phi(x). A sample that uses the coarse lattice and is a hit lies inside, at phi(x) <=
-// -nearest_coarse, unless margin >= nearest_coarse; then I(m) - phi(x) <= sqrt(r^2 + 3/4 s_m^2),
+// -nearest_coarse, unless margin >= nearest_coarse; then I(m) - phi(x) <= sqrt(r^2 + V(m)),
 // likewise, keeps the sphere anyway. So s_x = c is enough for margins below nearest_coarse. Centres
 // have their values from the coarse lattice, s_m = 4c: the fine one's would spare few packets (and
 // where bricks clamp them none), but take longer to look up than those packets.
@@ -32,7 +32,7 @@
 // margin.
 //
 // Clearance. A sample of that sphere that has moved by up to d since is within r + d of m, so all
-// of this holds of where it is now with r + d for r. With S = 3/4 s_m^2 + 3/4 s_x^2 (for a margin
+// of this holds of where it is now with r + d for r. With S = V(m) + 3/4 s_x^2 (for a margin
 // up to `wide`, by which s_x is chosen),
 //   f >= I(m) - sqrt((r + d)^2 + S) >= I(m) - sqrt(r^2 + S) - d   where that is at most `wide`;
 // beyond the cube f exceeds the distance to the cube, which is at least |m - m'| - r - d.

@@ -20,12 +20,12 @@ inline constexpr float kStoredRounding = 0.02F;
 /// Stands for the value of samples that are farther away than any margin [cells].
 inline constexpr float kFarBeyond = 1e30F;
 
-/// What is added to the square of a sphere's radius, whose centre has its value from the coarse
-/// lattice [cells^2]: 3/4 s_m^2 + 3/4 s_x^2.
-inline float squared_slack(const voxel::DistanceField& field, float margin) {
-  constexpr float kFine = 0.75F;
-  constexpr float kCoarse = 0.75F * voxel::kCoarseCells * voxel::kCoarseCells;
-  return kCoarse + (margin < field.nearest_coarse ? kFine : kCoarse);
+/// Largest variance of the lattice nodes around a hit: 3/4 of the squared spacing [cells^2], and a
+/// little for rounding.
+inline float variance_of_hits(const voxel::DistanceField& field, float margin) {
+  constexpr float kFine = 0.751F;
+  constexpr float kCoarse = 0.751F * voxel::kCoarseCells * voxel::kCoarseCells;
+  return margin < field.nearest_coarse ? kFine : kCoarse;
 }
 
 // The AVX2 builds of search_field and search_half_space. Only for processors that have it.
