@@ -17,26 +17,31 @@ class Chooser {
     const std::size_t n = candidates.size();
     const std::size_t padded = (n + kLanes - 1) / kLanes * kLanes;
     reduction_.kept.clear();
-    constexpr float kInfinite = std::numeric_limits<float>::infinity();
-    lanes_.distance.assign(padded, -1.0F);
-    std::fill_n(lanes_.distance.begin(), n, kInfinite);
-    lanes_.likeness.assign(padded, kInfinite);
-    lanes_.nearest.assign(padded, 0);
-    lanes_.reaches.assign(padded, 0.0F);
-    lanes_.weight.assign(padded, 0.0F);
-    for (std::vector<float>& part : lanes_.wrench) part.assign(padded, 0.0F);
+    make_room(padded);
     for (std::uint32_t i = 1; i < n; ++i) {
       if (candidates[i].gap < candidates[deepest_].gap) deepest_ = i;
     }
+    const double per_length = 1.0 / scale.length;
+    const double per_reach = 1.0 / scale.reach;
     for (std::size_t i = 0; i < n; ++i) {
       const ContactCandidate& c = candidates[i];
-      const Vec3 moment = c.point_A.cross(c.normal_A) / scale.length;
+      const Vec3 moment = per_length * c.point_A.cross(c.normal_A);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         lanes_.wrench[axis][i] = static_cast<float>(c.normal_A[static_cast<int>(axis)]);
         lanes_.wrench[3 + axis][i] = static_cast<float>(moment[static_cast<int>(axis)]);
       }
-      lanes_.reaches[i] = static_cast<float>((c.gap - candidates[deepest_].gap) / scale.reach);
+      lanes_.reaches[i] = static_cast<float>((c.gap - candidates[deepest_].gap) * per_reach);
       lanes_.weight[i] = 1.0F / (1.0F + lanes_.reaches[i] * lanes_.reaches[i]);
+    }
+    // What fills the last packet up is kept already, so that it is never wanted.
+    constexpr float kInfinite = std::numeric_limits<float>::infinity();
+    std::fill(lanes_.distance.begin(), lanes_.distance.end(), kInfinite);
+    std::fill(lanes_.likeness.begin(), lanes_.likeness.end(), kInfinite);
+    for (std::size_t i = n; i < padded; ++i) {
+      lanes_.distance[i] = -1.0F;
+      lanes_.reaches[i] = 0.0F;
+      lanes_.weight[i] = 0.0F;
+      for (std::vector<float>& part : lanes_.wrench) part[i] = 0.0F;
     }
   }
 
@@ -92,7 +97,6 @@ class Chooser {
   // Areas and their centres go to the nearest kept contacts.
   void share(const SlipField* slip) {
     for (ContactCandidate& c : candidates_) c.share_A = c.point_A;
-    const double lever = lever_arm(candidates_.size(), [](std::size_t i) { return i; });
     std::array<Vec3, kMaxReduced> centre;
     std::array<double, kMaxReduced> area{};
     Vec3 normal = Vec3::Zero();
@@ -107,7 +111,10 @@ class Chooser {
     }
     // On other patches lever arms and directions of slip mean nothing.
     constexpr double kFlat = 0.95;
-    const bool flat = normal.norm() >= kFlat * total && lever > 0.0;
+    const double lever = normal.norm() >= kFlat * total
+                             ? lever_arm(candidates_.size(), [](std::size_t i) { return i; })
+                             : 0.0;
+    const bool flat = lever > 0.0;
     SharesFriction shares;
     // What does not touch yet has no friction.
     const bool slides = flat && slip != nullptr && candidates_[deepest_].gap <= scale_.reach &&
@@ -124,6 +131,15 @@ class Chooser {
   }
 
  private:
+  void make_room(std::size_t count) {
+    for (std::vector<float>& part : lanes_.wrench) part.resize(count);
+    for (std::vector<float>* values :
+         {&lanes_.reaches, &lanes_.weight, &lanes_.distance, &lanes_.likeness}) {
+      values->resize(count);
+    }
+    lanes_.nearest.resize(count);
+  }
+
   // Mean distance of the area of some candidates from its centre, which friction against spinning
   // acts on under even pressure [m].
   // @param at  (k): index of the k-th of them
