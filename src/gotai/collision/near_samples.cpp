@@ -16,8 +16,8 @@
 namespace gotai::collision {
 namespace {
 
-constexpr float kAllowance = 0.25F;      // motion that a list is made for [cells]
-constexpr float kShortestLife = 4.0F;    // searches that a list must serve to be worth making
+constexpr float kAllowance = 0.35F;      // motion that a list is made for [cells]
+constexpr float kShortestLife = 3.0F;    // searches that a list must serve to be worth making
 constexpr float kFloatRounding = 2e-3F;  // of single-precision positions and values [cells]
 
 // No point nearer to the samples' origin than `radius` has moved farther between two poses.

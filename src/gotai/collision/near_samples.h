@@ -29,7 +29,7 @@ bool is_still_empty(const NearSamples& near, float moved, float margin,
 
 /// The same hits as search_field, from the packets in `near` while no other can hold one: the
 /// proof is in near_samples.cpp. When they do not suffice, all samples are searched, and `near`
-/// learns which ones matter until the bodies have moved a quarter of a cell.
+/// learns which ones matter until the bodies have moved a third of a cell.
 /// @param motion  the farthest that a sample is expected to move in the field until the next search
 ///                [m]: when the lists would not live long, none are made
 void search_field(const voxel::SurfaceModel& samples, const voxel::DistanceField& field,
