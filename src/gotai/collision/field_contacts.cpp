@@ -33,14 +33,12 @@ struct FieldContacts::Slid {
 };
 
 FieldContacts::FieldContacts(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
-                             ExactSurfaces smooth, bool samples_of_b)
+                             ExactSurfaces smooth, bool samples_of_b, const Pose& X_QP)
     : samples_of_b_(samples_of_b),
       p_MA_(bodies.p_MB[pair.body_a]),
       samples_(shapes[bodies.shape[samples_of_b ? pair.body_b : pair.body_a]]->surface),
       field_(shapes[bodies.shape[samples_of_b ? pair.body_a : pair.body_b]]->surface),
-      X_QP_(samples_of_b
-                ? relative_pose(bodies.mesh_pose(pair.body_a), bodies.mesh_pose(pair.body_b))
-                : relative_pose(bodies.mesh_pose(pair.body_b), bodies.mesh_pose(pair.body_a))),
+      X_QP_(X_QP),
       R_QP_(X_QP_.q.toRotationMatrix()),
       pose_(make_sample_pose(R_QP_, X_QP_ * samples_.center - field_.center)) {
   const std::uint32_t shape = bodies.shape[samples_of_b ? pair.body_b : pair.body_a];

@@ -33,9 +33,10 @@ class FieldContacts {
  public:
   /// @param shapes  indexed by BodyState::shape, with surface models
   /// @param smooth  likewise: samples slide on curved surfaces; empty: they stay where they are
+  /// @param X_QP    P's mesh frame in Q's
   FieldContacts(const model::BodyState& bodies, const BodyPair& pair,
                 std::span<const std::shared_ptr<const voxel::Shape>> shapes, ExactSurfaces smooth,
-                bool samples_of_b);
+                bool samples_of_b, const Pose& X_QP);
 
   /// Largest float that is not above the margin, so that searches keep the promise of the margin.
   static float search_margin(double margin);

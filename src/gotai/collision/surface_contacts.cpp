@@ -26,7 +26,14 @@ constexpr double kBeyond = 0.25;
 struct BothWays {
   FieldContacts of_a, of_b;
   BothWays(const BodyState& bodies, const BodyPair& pair, Shapes shapes, ExactSurfaces smooth)
-      : of_a(bodies, pair, shapes, smooth, false), of_b(bodies, pair, shapes, smooth, true) {}
+      : BothWays(bodies, pair, shapes, smooth,
+                 relative_pose(bodies.mesh_pose(pair.body_b), bodies.mesh_pose(pair.body_a))) {}
+
+ private:
+  BothWays(const BodyState& bodies, const BodyPair& pair, Shapes shapes, ExactSurfaces smooth,
+           const Pose& X_BA)
+      : of_a(bodies, pair, shapes, smooth, false, X_BA),
+        of_b(bodies, pair, shapes, smooth, true, X_BA.inverse()) {}
 };
 
 // The part of the memory that belongs to a pair.
