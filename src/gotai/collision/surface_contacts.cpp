@@ -92,9 +92,9 @@ bool is_still_apart(const NearPair& near, const BodyState& bodies, const BodyPai
   const double around = bodies.bounding_radius[pair.body_a] + 4.0 * cell + reach;
   const double moved = displacement(near.X_BA, body_pose(bodies, pair), around);
   if (near.clearance >= 0.0) {
-    constexpr double kFloatRounding = 2e-3;  // of the poses that were searched [cells]
+    constexpr double kPoseRounding = 2e-3;  // of the poses that were searched [cells]
     return static_cast<double>(FieldContacts::search_margin(reach)) <= near.clear_up_to &&
-           reach + moved + kFloatRounding * cell <= near.clearance;
+           reach + moved + kPoseRounding * cell <= near.clearance;
   }
   const float margin = FieldContacts::search_margin(reach);
   return is_still_empty(near.way[0], static_cast<float>(moved), margin, field_b) &&
