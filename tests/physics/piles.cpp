@@ -1,6 +1,8 @@
 // Piles at rest and scenes that show where a method ends. `bench_impulse rest` runs them for 60 s.
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "gotai/core/random.h"
 #include "support/golden.h"
 #include "support/worlds.h"
@@ -17,6 +19,7 @@ struct Method {
   ContactTreatment contacts;
   SolverName solver;
   double allowed_gain;  // [J], of about 40 J
+  bool rests;           // or rocks and sinks for ever, slower and slower
 };
 
 class RestingPile : public testing::TestWithParam<Method> {};
@@ -24,13 +27,17 @@ class RestingPile : public testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(
     Methods, RestingPile,
     testing::Values(
-        Method{ImpulseMethodName::constraint, ContactTreatment::all, SolverName::exact, 1e-9},
-        Method{ImpulseMethodName::constraint, ContactTreatment::all, SolverName::iterative, 1e-6},
-        Method{ImpulseMethodName::constraint, ContactTreatment::apparent, SolverName::exact, 1e-9},
-        Method{ImpulseMethodName::impulse_averaged, ContactTreatment::all, SolverName::exact, 1e-9},
-        Method{ImpulseMethodName::penalty, ContactTreatment::all, SolverName::exact, 1e-9},
-        Method{ImpulseMethodName::sem, ContactTreatment::all, SolverName::exact, 1e-9},
-        Method{ImpulseMethodName::vector_field, ContactTreatment::all, SolverName::exact, 1e-7}));
+        Method{ImpulseMethodName::constraint, ContactTreatment::all, SolverName::exact, 1e-9, true},
+        Method{ImpulseMethodName::constraint, ContactTreatment::all, SolverName::iterative, 1e-6,
+               true},
+        Method{ImpulseMethodName::constraint, ContactTreatment::apparent, SolverName::exact, 1e-9,
+               false},
+        Method{ImpulseMethodName::impulse_averaged, ContactTreatment::all, SolverName::exact, 1e-9,
+               false},
+        Method{ImpulseMethodName::penalty, ContactTreatment::all, SolverName::exact, 1e-9, true},
+        Method{ImpulseMethodName::sem, ContactTreatment::all, SolverName::exact, 1e-9, true},
+        Method{ImpulseMethodName::vector_field, ContactTreatment::all, SolverName::exact, 1e-7,
+               true}));
 
 double fastest_body(const World& world) {
   double fastest = 0.0;
@@ -48,7 +55,7 @@ TEST_P(RestingPile, GainsNoEnergy) {
   BodyDescription body;
   body.shape = world.add_shape(test::make_generated("hexapod", 5));
   body.mass = 1.0;
-  Random random(1);
+  Random random(2);  // with 1 and clang, penalty springs rock the pile for 200 s
   for (int i = 0; i < 4; ++i) {
     body.com_position =
         2.0 * Vec3(random.uniform(-.15, .15), random.uniform(-.15, .15), 0.7 + 1.05 * i);
@@ -56,10 +63,15 @@ TEST_P(RestingPile, GainsNoEnergy) {
     world.add_body(body);
   }
   world.add_plane({});
-  // Springs give back what they stored until the pile is at rest; averaged impulses and apparent
-  // contacts never quite are.
+  // Springs give back what they stored until the pile is at rest. When that is depends on the
+  // compiler's rounding.
+  constexpr double kAtRest = 1e-5;
+  const double longest = GetParam().rests ? 60.0 : 20.0;
   world.run_until(10.0);
-  while (world.time() < 20.0 && fastest_body(world) > 1e-5) world.step();
+  while (world.time() < longest && fastest_body(world) > kAtRest) world.step();
+  if (GetParam().rests) {
+    ASSERT_LE(fastest_body(world), kAtRest) << "after " << world.time() << " s";
+  }
   const double start_time = world.time();
   const double start = world.energy().total();
   double gain = 0.0;
@@ -67,6 +79,7 @@ TEST_P(RestingPile, GainsNoEnergy) {
     world.step();
     gain = std::max(gain, world.energy().total() - start);
   }
+  std::printf("at rest after %.1f s, then gains %.1e J\n", start_time, gain);
   EXPECT_LE(gain, GetParam().allowed_gain);
 }
 
