@@ -45,6 +45,7 @@ struct PairBatch {
   std::uint32_t row_begin = 0;  ///< into the row array
   std::uint32_t row_end = 0;
   std::uint32_t lanes = 0;               ///< lanes in use
+  bool pools_any = false;                ///< some lane has pools_load
   Lane3 offset;                          ///< centre of mass of a minus that of b [m], W
   Lane inverse_mass_a, inverse_mass_b;   ///< [1/kg]
   LaneInertia inverse_I_a, inverse_I_b;  ///< [1/(kg m^2)], W
@@ -55,7 +56,6 @@ struct PairBatch {
   Lane push_limit;     ///< largest recovery speed [m/s]
   /// 1: the pair slides on shares of a patch, whose friction depends on all that presses the pair.
   Lane pools_load;
-  bool pools_any = false;  ///< some lane does
 };
 
 /// One contact of each of the pairs of a batch. Missing contacts have n = 0.
