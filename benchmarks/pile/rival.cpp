@@ -52,8 +52,8 @@ Result simulate(const Options& o, const Pile& pile, const Rival& rival) {
   }
   result.contacts = *rival.contacts / std::max(1, steps);
   result.us_per_contact = 1e3 * result.ms_per_step / std::max(1.0, result.contacts);
-  result.us_per_contact_last_second = 1e3 * result.ms_last_second * rest_steps /
-                                      std::max(1.0, *rival.contacts - contacts_before);
+  result.us_per_contact_last_second =
+      1e3 * result.ms_last_second * rest_steps / std::max(1.0, *rival.contacts - contacts_before);
   result.energy_gain = (highest - initial) / std::abs(initial);
   double squares = 0.0;
   for (const Motion& body : rival.motions()) {
