@@ -73,15 +73,17 @@ pile::Options parse(int argc, char** argv) {
   return o;
 }
 
-void print_row(const pile::Result& r) {
+void print_row(const pile::Options& o, const pile::Result& r) {
   const TrueOverlap& v = r.overlap;
+  const std::string overlap =
+      o.judged ? fmt::format("{:.4f} / {:.3f} / {:.3f} | {:+.4f}", 100.0 * v.mean, 100.0 * v.p99,
+                             100.0 * v.max, 100.0 * v.gap3)
+               : "not judged | ";
+  const std::string lost = o.judged ? fmt::format("{} | {}", r.linked, r.escaped) : " | ";
   fmt::print(
-      "| {} | {:.2f} | {:.2f} | {:.1f} | {:.0f} | {:.2f} / {:.2f} | {:.4f} / {:.3f} / {:.3f} | "
-      "{:+.4f} | "
-      "{:.1e} | {} | {} | {:.1e} |\n",
+      "| {} | {:.2f} | {:.2f} | {:.1f} | {:.0f} | {:.2f} / {:.2f} | {} | {:.1e} | {} | {:.1e} |\n",
       r.engine, r.ms_per_step, r.ms_last_second, r.ms_worst, r.contacts, r.us_per_contact,
-      r.us_per_contact_last_second, 100.0 * v.mean, 100.0 * v.p99, 100.0 * v.max, 100.0 * v.gap3,
-      r.rms_speed, r.linked, r.escaped, r.energy_gain);
+      r.us_per_contact_last_second, overlap, r.rms_speed, lost, r.energy_gain);
 }
 
 void print_memory(const pile::Options& o) {
@@ -113,8 +115,8 @@ void run(const pile::Options& o) {
       "penetration % mean / p99 / "
       "max | gap3 % | rms speed m/s | linked | escaped | energy gain |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  print_row(ours);
-  for (const pile::Result& theirs : others) print_row(theirs);
+  print_row(o, ours);
+  for (const pile::Result& theirs : others) print_row(o, theirs);
   for (const pile::Result& theirs : others) {
     fmt::print(
         "gotai is {:.1f} times as fast as {} over the run, {:.1f} times in the last second, and "
