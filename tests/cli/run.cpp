@@ -89,16 +89,17 @@ TEST(Run, TheSameStateForAnyNumberOfThreadsAndTwiceInARow) {
   EXPECT_EQ(state_hash("4"), once);
 }
 
-TEST(Run, TheSameStateWithPortableInstructions) {
+TEST(Run, TheSameStateWithEveryInstructionSet) {
   const TemporaryFolder folder;
   const std::string scene = write_text(folder, "scene.toml", kManyHexapods);
   const auto run = [&] { return run_gotai({"run", scene, "--json"}).json(); };
   const json fastest = run();
-  ::setenv("GOTAI_INSTRUCTIONS", "portable", 1);
-  const json portable = run();
-  ::unsetenv("GOTAI_INSTRUCTIONS");
-  EXPECT_EQ(portable.at("state_hash"), fastest.at("state_hash"));
   EXPECT_GT(fastest.at("contacts").at("max"), 50);
+  for (const char* instructions : {"portable", "avx2"}) {
+    ::setenv("GOTAI_INSTRUCTIONS", instructions, 1);
+    EXPECT_EQ(run().at("state_hash"), fastest.at("state_hash")) << instructions;
+    ::unsetenv("GOTAI_INSTRUCTIONS");
+  }
 }
 
 TEST(Run, RecordingDoesNotChangeTheSimulation) {

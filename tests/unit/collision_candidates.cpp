@@ -190,44 +190,45 @@ TEST(Candidates, LeaveOutWhatCannotClose) {
 }
 
 TEST(Candidates, HaveTheSameBitsOnEveryKernel) {
-  if (!is_available(Kernel::avx2)) GTEST_SKIP() << "this processor has no AVX2";
-  for (const geometry::GeneratorOptions& options : solids()) {
-    NearCase c(options);
-    CandidateScratch scratch;
-    std::vector<ContactCandidate> portable;
-    std::vector<ContactCandidate> avx2;
-    for (int trial = 0; trial < 60; ++trial) {
-      c.move(0.9, 0.1F);
-      portable.clear();
-      avx2.clear();
-      const NearSurface near = c.near(trial % 2 == 1, true);
-      append_candidates(near, c.search.hits, 0.1F, kAll, scratch, portable, Kernel::portable);
-      append_candidates(near, c.search.hits, 0.1F, kAll, scratch, avx2, Kernel::avx2);
-      ASSERT_EQ(portable.size(), avx2.size());
-      for (std::size_t i = 0; i < portable.size(); ++i) {
-        ASSERT_EQ(portable[i].feature, avx2[i].feature);
-        ASSERT_EQ(portable[i].gap, avx2[i].gap);
-        ASSERT_EQ(portable[i].area, avx2[i].area);
-        ASSERT_EQ(portable[i].point_A, avx2[i].point_A);
-        ASSERT_EQ(portable[i].normal_A, avx2[i].normal_A);
-        ASSERT_EQ(portable[i].near_edge, avx2[i].near_edge);
-      }
-      const auto& points = c.p.surface.tree.vertex;
-      if (points.empty()) continue;
-      const std::size_t count = std::min<std::size_t>(points.size(), 37);
-      std::vector<float> one(count);
-      std::vector<float> two(count);
-      look_up_distances(near.field, near.pose, 0.1F, std::span(points).first(count), one,
-                        Kernel::portable);
-      look_up_distances(near.field, near.pose, 0.1F, std::span(points).first(count), two,
-                        Kernel::avx2);
-      ASSERT_EQ(one, two);
-      for (std::size_t i = 0; i < count; ++i) {
-        const double exact = voxel::evaluate(near.field, c.X_QP * to_double(points[i])).distance;
-        if (exact < 0.1 - 1e-5) {
-          ASSERT_NEAR(static_cast<double>(one[i]), exact, 2e-6);
-        } else {
-          ASSERT_GT(one[i], 0.1F - 2e-5F);
+  for (const Kernel kernel : {Kernel::avx2, Kernel::avx512}) {
+    if (!is_available(kernel)) continue;
+    for (const geometry::GeneratorOptions& options : solids()) {
+      NearCase c(options);
+      CandidateScratch scratch;
+      std::vector<ContactCandidate> portable;
+      std::vector<ContactCandidate> other;
+      for (int trial = 0; trial < 60; ++trial) {
+        c.move(0.9, 0.1F);
+        portable.clear();
+        other.clear();
+        const NearSurface near = c.near(trial % 2 == 1, true);
+        append_candidates(near, c.search.hits, 0.1F, kAll, scratch, portable, Kernel::portable);
+        append_candidates(near, c.search.hits, 0.1F, kAll, scratch, other, kernel);
+        ASSERT_EQ(portable.size(), other.size());
+        for (std::size_t i = 0; i < portable.size(); ++i) {
+          ASSERT_EQ(portable[i].feature, other[i].feature);
+          ASSERT_EQ(portable[i].gap, other[i].gap);
+          ASSERT_EQ(portable[i].area, other[i].area);
+          ASSERT_EQ(portable[i].point_A, other[i].point_A);
+          ASSERT_EQ(portable[i].normal_A, other[i].normal_A);
+          ASSERT_EQ(portable[i].near_edge, other[i].near_edge);
+        }
+        const auto& points = c.p.surface.tree.vertex;
+        if (points.empty()) continue;
+        const std::size_t count = std::min<std::size_t>(points.size(), 37);
+        std::vector<float> one(count);
+        std::vector<float> two(count);
+        look_up_distances(near.field, near.pose, 0.1F, std::span(points).first(count), one,
+                          Kernel::portable);
+        look_up_distances(near.field, near.pose, 0.1F, std::span(points).first(count), two, kernel);
+        ASSERT_EQ(one, two);
+        for (std::size_t i = 0; i < count; ++i) {
+          const double exact = voxel::evaluate(near.field, c.X_QP * to_double(points[i])).distance;
+          if (exact < 0.1 - 1e-5) {
+            ASSERT_NEAR(static_cast<double>(one[i]), exact, 2e-6);
+          } else {
+            ASSERT_GT(one[i], 0.1F - 2e-5F);
+          }
         }
       }
     }

@@ -43,15 +43,17 @@ TEST_P(Exact, NearestPointIsThatOfTheSearchInDoublePrecision) {
 }
 
 TEST_P(Exact, NearestTriangleIsTheSameOnEveryKernel) {
-  if (!is_available(Kernel::avx2)) GTEST_SKIP() << "this processor has no AVX2";
-  const ExactSurface exact(make());
-  Random random(32);
-  for (int k = 0; k < 2000; ++k) {
-    const Eigen::Vector3f x = (random.uniform(0.0, 0.9) * random.unit_vector()).cast<float>();
-    const auto limit = static_cast<float>(random.uniform(0.0, 0.5));
-    const std::array<float, 3> p = {x.x(), x.y(), x.z()};
-    ASSERT_EQ(nearest_triangle(exact.tree, p, limit, Kernel::portable),
-              nearest_triangle(exact.tree, p, limit, Kernel::avx2));
+  for (const Kernel kernel : {Kernel::avx2, Kernel::avx512}) {
+    if (!is_available(kernel)) continue;
+    const ExactSurface exact(make());
+    Random random(32);
+    for (int k = 0; k < 2000; ++k) {
+      const Eigen::Vector3f x = (random.uniform(0.0, 0.9) * random.unit_vector()).cast<float>();
+      const auto limit = static_cast<float>(random.uniform(0.0, 0.5));
+      const std::array<float, 3> p = {x.x(), x.y(), x.z()};
+      ASSERT_EQ(nearest_triangle(exact.tree, p, limit, Kernel::portable),
+                nearest_triangle(exact.tree, p, limit, kernel));
+    }
   }
 }
 INSTANTIATE_TEST_SUITE_P(Shapes, Exact, testing::Values("hexapod", "rock", "torus", "cube"));

@@ -55,38 +55,40 @@ TEST(Reduction, KeepsFewAndStatesHowFarTheOthersAre) {
 
 // Bits, not values: what a run computes must not depend on the processor.
 TEST(Reduction, ChoosesWithTheSameBitsOnEveryKernel) {
-  if (!is_available(Kernel::avx2)) GTEST_SKIP() << "no AVX2";
-  Random random(23);
-  for (const std::size_t count : {8U, 16U, 64U}) {
-    WrenchLanes lanes;
-    const auto fill = [&](std::vector<float>& column, double low, double high) {
-      column.resize(count);
-      for (float& x : column) x = static_cast<float>(random.uniform(low, high));
-    };
-    for (std::vector<float>& part : lanes.wrench) fill(part, -1.0, 1.0);
-    fill(lanes.reaches, 0.0, 2.0);
-    fill(lanes.weight, 0.0, 1.0);
-    fill(lanes.distance, 9.0, 9.0);
-    lanes.distance.back() = -1.0F;  // padding
-    fill(lanes.likeness, 9.0, 9.0);
-    lanes.nearest.assign(count, 0);
-    WrenchLanes others = lanes;
-    std::uint32_t chosen = 1;
-    for (std::uint32_t k = 0; k < 6; ++k) {
-      const FarthestWrench portable = keep_wrench(lanes, chosen, k, 1e-4F, Kernel::portable);
-      const FarthestWrench avx2 = keep_wrench(others, chosen, k, 1e-4F, Kernel::avx2);
-      EXPECT_LT(lanes.distance[chosen], 0.0F);
-      ASSERT_EQ(portable.index, avx2.index);
-      EXPECT_EQ(portable.squared, avx2.squared);
-      EXPECT_EQ(lanes.distance, others.distance);
-      EXPECT_EQ(lanes.likeness, others.likeness);
-      EXPECT_EQ(lanes.nearest, others.nearest);
-      ASSERT_LT(portable.index, count - 1);
-      for (std::size_t i = 0; i < count; ++i) {
-        EXPECT_LE(lanes.distance[i] * lanes.weight[i],
-                  lanes.distance[portable.index] * lanes.weight[portable.index]);
+  for (const Kernel kernel : {Kernel::avx2, Kernel::avx512}) {
+    if (!is_available(kernel)) continue;
+    Random random(23);
+    for (const std::size_t count : {8U, 16U, 64U}) {
+      WrenchLanes lanes;
+      const auto fill = [&](std::vector<float>& column, double low, double high) {
+        column.resize(count);
+        for (float& x : column) x = static_cast<float>(random.uniform(low, high));
+      };
+      for (std::vector<float>& part : lanes.wrench) fill(part, -1.0, 1.0);
+      fill(lanes.reaches, 0.0, 2.0);
+      fill(lanes.weight, 0.0, 1.0);
+      fill(lanes.distance, 9.0, 9.0);
+      lanes.distance.back() = -1.0F;  // padding
+      fill(lanes.likeness, 9.0, 9.0);
+      lanes.nearest.assign(count, 0);
+      WrenchLanes others = lanes;
+      std::uint32_t chosen = 1;
+      for (std::uint32_t k = 0; k < 6; ++k) {
+        const FarthestWrench portable = keep_wrench(lanes, chosen, k, 1e-4F, Kernel::portable);
+        const FarthestWrench other = keep_wrench(others, chosen, k, 1e-4F, kernel);
+        EXPECT_LT(lanes.distance[chosen], 0.0F);
+        ASSERT_EQ(portable.index, other.index);
+        EXPECT_EQ(portable.squared, other.squared);
+        EXPECT_EQ(lanes.distance, others.distance);
+        EXPECT_EQ(lanes.likeness, others.likeness);
+        EXPECT_EQ(lanes.nearest, others.nearest);
+        ASSERT_LT(portable.index, count - 1);
+        for (std::size_t i = 0; i < count; ++i) {
+          EXPECT_LE(lanes.distance[i] * lanes.weight[i],
+                    lanes.distance[portable.index] * lanes.weight[portable.index]);
+        }
+        chosen = portable.index;
       }
-      chosen = portable.index;
     }
   }
 }

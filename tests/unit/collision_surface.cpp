@@ -127,40 +127,42 @@ TEST_P(Search, ClearanceHoldsForEverySampleAndMotion) {
 
 // Bits, not values: what a run computes must not depend on the processor.
 TEST_P(Search, GivesTheSameBitsOnEveryKernel) {
-  if (!is_available(Kernel::avx2)) GTEST_SKIP() << "this processor has no AVX2";
-  const ShapePointer a = make(GetParam(), 5);
-  const ShapePointer b = make("rock", 5);
-  Random random(12);
-  SurfaceSearch portable;
-  SurfaceSearch avx2;
-  const auto equal = [&] {
-    return portable.hits.size() == avx2.hits.size() && portable.tests == avx2.tests &&
-           std::memcmp(portable.hits.data(), avx2.hits.data(),
-                       portable.hits.size() * sizeof(SurfaceHit)) == 0;
-  };
-  std::size_t found = 0;
-  for (int trial = 0; trial < 200; ++trial) {
-    const SamplePose pose = make_sample_pose(random.rotation().toRotationMatrix(),
-                                             random.uniform(0.0, 1.3) * random.unit_vector());
-    const auto margin = static_cast<float>(random.uniform(0.0, 0.3));
-    search_field(a->surface.tree, b->surface.field, pose, margin, portable, Kernel::portable);
-    search_field(a->surface.tree, b->surface.field, pose, margin, avx2, Kernel::avx2);
-    ASSERT_TRUE(equal());
-    search_field_widely(a->surface.tree, b->surface.field, pose, margin, 2.0F * margin, portable,
+  for (const Kernel kernel : {Kernel::avx2, Kernel::avx512}) {
+    if (!is_available(kernel)) continue;
+    const ShapePointer a = make(GetParam(), 5);
+    const ShapePointer b = make("rock", 5);
+    Random random(12);
+    SurfaceSearch portable;
+    SurfaceSearch other;
+    const auto equal = [&] {
+      return portable.hits.size() == other.hits.size() && portable.tests == other.tests &&
+             std::memcmp(portable.hits.data(), other.hits.data(),
+                         portable.hits.size() * sizeof(SurfaceHit)) == 0;
+    };
+    std::size_t found = 0;
+    for (int trial = 0; trial < 200; ++trial) {
+      const SamplePose pose = make_sample_pose(random.rotation().toRotationMatrix(),
+                                               random.uniform(0.0, 1.3) * random.unit_vector());
+      const auto margin = static_cast<float>(random.uniform(0.0, 0.3));
+      search_field(a->surface.tree, b->surface.field, pose, margin, portable, Kernel::portable);
+      search_field(a->surface.tree, b->surface.field, pose, margin, other, kernel);
+      ASSERT_TRUE(equal());
+      search_field_widely(a->surface.tree, b->surface.field, pose, margin, 2.0F * margin, portable,
+                          Kernel::portable);
+      search_field_widely(a->surface.tree, b->surface.field, pose, margin, 2.0F * margin, other,
+                          kernel);
+      ASSERT_TRUE(equal());
+      ASSERT_EQ(portable.clearance, other.clearance);
+      found += portable.hits.size();
+      const Eigen::Vector3f n = random.unit_vector().cast<float>();
+      const auto offset = static_cast<float>(random.uniform(-0.2, 0.6));
+      search_half_space(a->surface.tree, {n.x(), n.y(), n.z()}, offset, margin, portable,
                         Kernel::portable);
-    search_field_widely(a->surface.tree, b->surface.field, pose, margin, 2.0F * margin, avx2,
-                        Kernel::avx2);
-    ASSERT_TRUE(equal());
-    ASSERT_EQ(portable.clearance, avx2.clearance);
-    found += portable.hits.size();
-    const Eigen::Vector3f n = random.unit_vector().cast<float>();
-    const auto offset = static_cast<float>(random.uniform(-0.2, 0.6));
-    search_half_space(a->surface.tree, {n.x(), n.y(), n.z()}, offset, margin, portable,
-                      Kernel::portable);
-    search_half_space(a->surface.tree, {n.x(), n.y(), n.z()}, offset, margin, avx2, Kernel::avx2);
-    ASSERT_TRUE(equal());
+      search_half_space(a->surface.tree, {n.x(), n.y(), n.z()}, offset, margin, other, kernel);
+      ASSERT_TRUE(equal());
+    }
+    EXPECT_GT(found, 1000U);
   }
-  EXPECT_GT(found, 1000U);
 }
 INSTANTIATE_TEST_SUITE_P(Shapes, Search, testing::Values("hexapod", "rock", "torus", "cube"));
 

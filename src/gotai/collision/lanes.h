@@ -7,6 +7,9 @@
 #include <cstdint>
 #include <cstring>
 
+// Whatever the compiler would choose: vectors must not be passed between functions.
+#define GOTAI_INLINE inline __attribute__((always_inline))
+
 namespace gotai::collision {
 
 inline constexpr int kLanes = 8;

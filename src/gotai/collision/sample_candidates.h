@@ -1,7 +1,7 @@
 /// @file
 /// From samples that are near another surface to candidates for contacts, eight at a time: the
 /// normal that a sample and the field agree on, the place on a curved surface, the area that
-/// counts. The AVX2 and the portable path give the same bits.
+/// counts. All instruction sets give the same bits.
 #pragma once
 
 #include <array>

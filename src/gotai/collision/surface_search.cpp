@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "gotai/collision/exact_surface.h"
+#include "gotai/collision/kernels.h"
 #include "gotai/collision/lanes.h"
 #include "gotai/collision/surface_search_bounds.h"
 #include "gotai/core/instruction_set.h"
@@ -38,7 +39,6 @@
 // beyond the cube f exceeds the distance to the cube, which is at least |m - m'| - r - d.
 
 #define GOTAI_KERNEL portable
-#define GOTAI_INLINE inline __attribute__((always_inline))
 
 namespace gotai::collision::portable {
 
@@ -76,19 +76,31 @@ GOTAI_INLINE F8 root(F8 x) {
 
 }  // namespace gotai::collision::portable
 
-#include "gotai/collision/surface_search_kernel.inc"
-#include "gotai/collision/triangle_search_kernel.inc"
-
-#include "gotai/collision/candidate_kernel.inc"
-
-#include "gotai/collision/reduction_kernel.inc"
+#include "gotai/collision/kernels.inc"
 
 namespace gotai::collision {
 namespace {
 
-bool use_avx2(Kernel kernel) {
-  static const bool available = is_available(Kernel::avx2) && !portable_instructions_wanted();
-  return kernel == Kernel::avx2 || (kernel == Kernel::automatic && available);
+Kernel fastest_kernel() {
+  const Instructions wanted = wanted_instructions();
+  if (wanted == Instructions::best && is_available(Kernel::avx512)) return Kernel::avx512;
+  if (wanted != Instructions::portable && is_available(Kernel::avx2)) return Kernel::avx2;
+  return Kernel::portable;
+}
+
+const KernelTable& table_of(Kernel kernel) {
+  static const Kernel fastest = fastest_kernel();
+#ifdef __x86_64__
+  switch (kernel == Kernel::automatic ? fastest : kernel) {
+    case Kernel::avx512:
+      return kAvx512Kernels;
+    case Kernel::avx2:
+      return kAvx2Kernels;
+    default:
+      break;
+  }
+#endif
+  return portable::kTable;
 }
 
 }  // namespace
@@ -102,99 +114,69 @@ SamplePose make_sample_pose(const Mat3& R, const Vec3& t) {
 }
 
 bool is_available(Kernel kernel) {
-  if (kernel != Kernel::avx2) return true;
 #ifdef __x86_64__
-  return __builtin_cpu_supports("avx2") != 0;
+  const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
+  const auto has_all_avx512 = [] {
+    return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
+           __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512bw") != 0;
+  };
 #else
-  return false;
+  const bool has_avx2 = false;
+  const auto has_all_avx512 = [] { return false; };
 #endif
+  switch (kernel) {
+    case Kernel::avx2:
+      return has_avx2;
+    case Kernel::avx512:
+      return has_avx2 && has_all_avx512();
+    default:
+      return true;
+  }
 }
 
 void search_field(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
                   const SamplePose& pose, SearchReach reach, SurfaceSearch& search, Kernel kernel) {
-#ifdef __x86_64__
-  if (use_avx2(kernel)) {
-    search_field_avx2(samples, field, pose, reach, search);
-    return;
-  }
-#endif
-  portable::search_field<false>(samples, field, pose, reach, reach.margin, search);
+  table_of(kernel).search_field(samples, field, pose, reach, search);
 }
 
 void search_field_widely(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
                          const SamplePose& pose, SearchReach reach, float wide,
                          SurfaceSearch& search, Kernel kernel) {
-#ifdef __x86_64__
-  if (use_avx2(kernel)) {
-    search_field_widely_avx2(samples, field, pose, reach, wide, search);
-    return;
-  }
-#endif
-  portable::search_field<true>(samples, field, pose, reach, wide, search);
+  table_of(kernel).search_field_widely(samples, field, pose, reach, wide, search);
 }
 
 void search_packets(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
                     const SamplePose& pose, SearchReach reach,
                     const std::vector<std::uint32_t>& packets, SurfaceSearch& search,
                     Kernel kernel) {
-#ifdef __x86_64__
-  if (use_avx2(kernel)) {
-    search_packets_avx2(samples, field, pose, reach, packets, search);
-    return;
-  }
-#endif
-  portable::search_packets(samples, field, pose, reach, packets, search);
+  table_of(kernel).search_packets(samples, field, pose, reach, packets, search);
 }
 
 void search_half_space(const voxel::SurfaceTree& samples, const std::array<float, 3>& normal,
                        float offset, float margin, SurfaceSearch& search, Kernel kernel) {
-#ifdef __x86_64__
-  if (use_avx2(kernel)) {
-    search_half_space_avx2(samples, normal, offset, margin, search);
-    return;
-  }
-#endif
-  portable::search_half_space(samples, normal, offset, margin, search);
+  table_of(kernel).search_half_space(samples, normal, offset, margin, search);
 }
 
 std::uint32_t nearest_triangle(const voxel::TriangleTree& tree, const std::array<float, 3>& point,
                                float limit, Kernel kernel) {
-#ifdef __x86_64__
-  if (use_avx2(kernel)) return nearest_triangle_avx2(tree, point, limit);
-#endif
-  return portable::nearest_triangle(tree, point, limit);
+  return table_of(kernel).nearest_triangle(tree, point, limit);
 }
 
 void make_candidates(const NearSurface& near, float margin, const Closing& closing,
                      const HitLanes* hits, std::size_t packets, CandidateLanes* out,
                      Kernel kernel) {
-#ifdef __x86_64__
-  if (use_avx2(kernel)) {
-    make_candidates_avx2(near, margin, closing, hits, packets, out);
-    return;
-  }
-#endif
-  portable::make_candidates(near, margin, closing, hits, packets, out);
+  table_of(kernel).make_candidates(near, margin, closing, hits, packets, out);
 }
 
 void look_up_distances(const voxel::DistanceField& field, const SamplePose& pose, float margin,
                        std::span<const std::array<float, 3>> points, std::span<float> distances,
                        Kernel kernel) {
-#ifdef __x86_64__
-  if (use_avx2(kernel)) {
-    look_up_distances_avx2(field, pose, margin, points, distances);
-    return;
-  }
-#endif
-  portable::look_up_distances(field, pose, margin, points.data(), points.size(), distances.data());
+  table_of(kernel).look_up_distances(field, pose, margin, points, distances);
 }
 
 FarthestWrench keep_wrench(WrenchLanes& lanes, std::uint32_t chosen, std::uint32_t position,
                            float same, Kernel kernel) {
-#ifdef __x86_64__
-  if (use_avx2(kernel)) return keep_wrench_avx2(lanes, chosen, position, same);
-#endif
-  return portable::keep_wrench(lanes, chosen, position, same);
+  return table_of(kernel).keep_wrench(lanes, chosen, position, same);
 }
 
 }  // namespace gotai::collision

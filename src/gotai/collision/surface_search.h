@@ -1,7 +1,6 @@
 /// @file
 /// Which samples of one surface are near another: descent of an 8-ary sample tree in a distance
-/// field or above a plane, eight lanes at a time. The AVX2 and the portable path give the same
-/// bits.
+/// field or above a plane, eight lanes at a time. All instruction sets give the same bits.
 #pragma once
 
 #include <array>
@@ -60,7 +59,7 @@ struct SurfaceSearch {
 };
 
 /// Instruction set of the kernels.
-enum class Kernel : std::uint8_t { automatic, portable, avx2 };
+enum class Kernel : std::uint8_t { automatic, portable, avx2, avx512 };
 /// Whether this processor and build can run a kernel.
 bool is_available(Kernel kernel);
 

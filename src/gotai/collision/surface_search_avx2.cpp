@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "gotai/collision/kernels.h"
 #include "gotai/collision/lanes.h"
 #include "gotai/collision/surface_search.h"
 #include "gotai/collision/surface_search_bounds.h"
@@ -23,16 +24,11 @@
 #endif
 
 #define GOTAI_KERNEL avx2
-#define GOTAI_INLINE inline __attribute__((always_inline))
 
 namespace gotai::collision::avx2 {
 
 GOTAI_INLINE unsigned mask_of(I8 lanes) {
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps((__m256i)lanes)));
-}
-
-GOTAI_INLINE I8 gather(const std::int32_t* values, I8 index) {
-  return (I8)_mm256_i32gather_epi32(values, (__m256i)index, 4);
 }
 
 // The lanes of every mask, one per byte.
@@ -58,69 +54,15 @@ GOTAI_INLINE void store_lanes(unsigned mask, std::uint32_t first, std::uint32_t*
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), values);
 }
 
-// values[index] and values[index + 1] of every lane, in one 32-bit gather.
-GOTAI_INLINE void gather_pairs(const std::int16_t* values, I8 index, F8& first, F8& second) {
-  const auto* base = reinterpret_cast<const int*>(values);
-  const I8 both = (I8)_mm256_i32gather_epi32(base, (__m256i)index, 2);
-  first = __builtin_convertvector((both << 16) >> 16, F8);
-  second = __builtin_convertvector(both >> 16, F8);
-}
-
-GOTAI_INLINE F8 root(F8 x) { return (F8)_mm256_sqrt_ps((__m256)x); }
-
 }  // namespace gotai::collision::avx2
 
-#include "gotai/collision/surface_search_kernel.inc"
-#include "gotai/collision/triangle_search_kernel.inc"
+#include "gotai/collision/x86_lanes.inc"
 
-#include "gotai/collision/candidate_kernel.inc"
-
-#include "gotai/collision/reduction_kernel.inc"
+#include "gotai/collision/kernels.inc"
 
 namespace gotai::collision {
 
-void search_field_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
-                       const SamplePose& pose, SearchReach reach, SurfaceSearch& search) {
-  avx2::search_field<false>(samples, field, pose, reach, reach.margin, search);
-}
-
-void search_field_widely_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
-                              const SamplePose& pose, SearchReach reach, float wide,
-                              SurfaceSearch& search) {
-  avx2::search_field<true>(samples, field, pose, reach, wide, search);
-}
-
-void search_packets_avx2(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
-                         const SamplePose& pose, SearchReach reach,
-                         const std::vector<std::uint32_t>& packets, SurfaceSearch& search) {
-  avx2::search_packets(samples, field, pose, reach, packets, search);
-}
-
-void search_half_space_avx2(const voxel::SurfaceTree& samples, const std::array<float, 3>& normal,
-                            float offset, float margin, SurfaceSearch& search) {
-  avx2::search_half_space(samples, normal, offset, margin, search);
-}
-
-std::uint32_t nearest_triangle_avx2(const voxel::TriangleTree& tree,
-                                    const std::array<float, 3>& point, float limit) {
-  return avx2::nearest_triangle(tree, point, limit);
-}
-
-void make_candidates_avx2(const NearSurface& near, float margin, const Closing& closing,
-                          const HitLanes* hits, std::size_t packets, CandidateLanes* out) {
-  avx2::make_candidates(near, margin, closing, hits, packets, out);
-}
-
-void look_up_distances_avx2(const voxel::DistanceField& field, const SamplePose& pose, float margin,
-                            std::span<const std::array<float, 3>> points,
-                            std::span<float> distances) {
-  avx2::look_up_distances(field, pose, margin, points.data(), points.size(), distances.data());
-}
-
-FarthestWrench keep_wrench_avx2(WrenchLanes& lanes, std::uint32_t chosen, std::uint32_t position,
-                                float same) {
-  return avx2::keep_wrench(lanes, chosen, position, same);
-}
+const KernelTable kAvx2Kernels = avx2::kTable;
 
 }  // namespace gotai::collision
 

@@ -5,10 +5,13 @@
 
 namespace gotai {
 
-bool portable_instructions_wanted() {
-  static const bool wanted = [] {
-    const char* instructions = std::getenv("GOTAI_INSTRUCTIONS");
-    return instructions != nullptr && std::string_view(instructions) == "portable";
+Instructions wanted_instructions() {
+  static const Instructions wanted = [] {
+    const char* name = std::getenv("GOTAI_INSTRUCTIONS");
+    if (name == nullptr) return Instructions::best;
+    if (std::string_view(name) == "portable") return Instructions::portable;
+    if (std::string_view(name) == "avx2") return Instructions::avx2;
+    return Instructions::best;
   }();
   return wanted;
 }

@@ -360,7 +360,9 @@ namespace {
 // Before the first choice of a target.
 void choose_target() {
   static const bool chosen = [] {
-    if (portable_instructions_wanted()) hwy::DisableTargets(~std::int64_t{HWY_STATIC_TARGET});
+    const Instructions wanted = wanted_instructions();
+    if (wanted == Instructions::portable) hwy::DisableTargets(~std::int64_t{HWY_STATIC_TARGET});
+    if (wanted == Instructions::avx2) hwy::DisableTargets(HWY_AVX2 - 1);  // all that are better
     return true;
   }();
   static_cast<void>(chosen);
