@@ -15,7 +15,7 @@ using model::BodyState;
 using Shapes = std::span<const std::shared_ptr<const voxel::Shape>>;
 
 // Contacts farther than this are impacts to come, not what bodies rest on [cells].
-constexpr float kFarCells = 2.0F;
+constexpr float kFarCells = 1.0F;
 // Interpolated distances are off by less than half the diagonal of a cell [cells].
 constexpr double kFieldError = 0.9;
 
@@ -119,10 +119,13 @@ void FieldContacts::refine_in_place(const ExactSurface& exact, ContactCandidate&
 }
 
 // Of a packet whose samples are all far from Q, the nearest stands for all: it lies within a few
-// cells of them, and what comes near is searched again.
+// cells of them, and what comes near is searched again. Lists of near samples know nothing of far
+// packets; they serve smaller margins only.
 SearchReach FieldContacts::search_reach(double margin, bool thin) const {
   if (!thin) return search_margin(margin);
-  return {search_margin(margin), kFarCells * field_.field.cell};
+  const float far = kFarCells * field_.field.cell;
+  const float reach = search_margin(margin);
+  return {reach, far, reach > far ? far : std::numeric_limits<float>::infinity()};
 }
 
 void FieldContacts::append_hits(float margin, const PairMotion& motion,

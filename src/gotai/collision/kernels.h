@@ -24,6 +24,9 @@ struct KernelTable {
   void (*search_field_widely)(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
                               const SamplePose& pose, const SearchReach& reach, float wide,
                               SurfaceSearch& search);
+  void (*search_and_list)(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                          const SamplePose& pose, const SearchReach& reach, float wide,
+                          SurfaceSearch& search, std::vector<std::uint32_t>& list);
   void (*search_packets)(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
                          const SamplePose& pose, const SearchReach& reach,
                          const std::vector<std::uint32_t>& packets, SurfaceSearch& search);

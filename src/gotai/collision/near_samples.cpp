@@ -67,13 +67,7 @@ void search_field(const voxel::SurfaceModel& samples, const voxel::DistanceField
   near.margin = reach.margin + field.slope * allowance + kFloatRounding * field.cell;
   near.pose = pose;
   near.moved = 0.0F;
-  search_field(samples.tree, field, pose, {near.margin, 0.0F}, search);
-  near.packets.clear();
-  for (const SurfaceHit& hit : search.hits) {
-    const std::uint32_t packet = hit.sample / voxel::kLanes;
-    if (near.packets.empty() || near.packets.back() != packet) near.packets.push_back(packet);
-  }
-  search_packets(samples.tree, field, pose, reach, near.packets, search);
+  search_and_list(samples.tree, field, pose, reach, near.margin, search, near.packets);
 }
 
 }  // namespace gotai::collision

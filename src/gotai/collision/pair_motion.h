@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "gotai/collision/broad_phase.h"
@@ -37,6 +38,11 @@ class PairMotion {
         q_AW * (bodies.v_W[a] - bodies.v_W[b] - bodies.w_W[b].cross(bodies.x_W[a] - bodies.x_W[b]));
     w_A_ = q_AW * (bodies.w_W[a] - bodies.w_W[b]);
     fastest_ = v_A_.norm() + w_A_.norm() * bodies.bounding_radius[a];
+    fastest_near_b_ = fastest_;
+    if (between_shapes_ && dt_ > 0.0) {
+      limit_to_lens(q_AW * (bodies.x_W[b] - bodies.x_W[a]), bodies.bounding_radius[a],
+                    bodies.bounding_radius[b]);
+    }
   }
 
   /// How a moves along b.
@@ -51,7 +57,7 @@ class PairMotion {
   /// The margin up to which contacts of this pair matter in the step.
   double reach(double margin) const {
     if (!(dt_ > 0.0)) return margin;
-    const double needed = rest_reach() + farthest();
+    const double needed = rest_reach() + fastest_near_b_ * dt_;
     return std::min({margin, needed, between_shapes_ ? kFarthestReach * size_ : needed});
   }
 
@@ -74,6 +80,20 @@ class PairMotion {
   }
 
  private:
+  // What closes within the step is near b's sphere and in a's own: how fast is the lens between
+  // them, at most, by the ball around it?
+  void limit_to_lens(const Vec3& b_A, double radius_a, double radius_b) {
+    const double near_b = radius_b + std::min(rest_reach() + farthest(), kFarthestReach * size_);
+    const double distance = b_A.norm();
+    // From a's centre to the plane through the spheres' common circle.
+    const double to_plane =
+        0.5 * (distance * distance + radius_a * radius_a - near_b * near_b) / distance;
+    if (!(to_plane > 0.0 && to_plane < distance)) return;
+    const double width = std::sqrt(std::max(0.0, radius_a * radius_a - to_plane * to_plane));
+    const Vec3 middle = (to_plane / distance) * b_A;
+    fastest_near_b_ = std::min(fastest_, (v_A_ + w_A_.cross(middle)).norm() + w_A_.norm() * width);
+  }
+
   // Reaches, as fractions of size(): of contacts at rest; of what impacts elsewhere may add to the
   // approach within a step; and the farthest between shapes.
   static constexpr double kRestReach = 0.003;
@@ -84,8 +104,9 @@ class PairMotion {
   double dt_;
   double size_;
   bool between_shapes_;
-  Vec3 v_A_, w_A_;  // of a against b, at a's centre of mass
-  double fastest_;  // no point of a moves faster against b [m/s]
+  Vec3 v_A_, w_A_;         // of a against b, at a's centre of mass
+  double fastest_;         // no point of a moves faster against b [m/s]
+  double fastest_near_b_;  // of those that can meet b in the step
 };
 
 }  // namespace gotai::collision

@@ -1,6 +1,7 @@
 #include "gotai/collision/surface_search.h"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "gotai/collision/exact_surface.h"
@@ -143,6 +144,12 @@ void search_field_widely(const voxel::SurfaceTree& samples, const voxel::Distanc
                          const SamplePose& pose, SearchReach reach, float wide,
                          SurfaceSearch& search, Kernel kernel) {
   table_of(kernel).search_field_widely(samples, field, pose, reach, wide, search);
+}
+
+void search_and_list(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                     const SamplePose& pose, SearchReach reach, float wide, SurfaceSearch& search,
+                     std::vector<std::uint32_t>& list, Kernel kernel) {
+  table_of(kernel).search_and_list(samples, field, pose, reach, wide, search, list);
 }
 
 void search_packets(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,

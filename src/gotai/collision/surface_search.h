@@ -41,10 +41,21 @@ struct SearchReach {
   float margin;
   /// Of eight samples of a packet that are all farther than this only the nearest is a hit [m].
   float sparse;
+  /// Of eight samples of a packet that are farther than this by the field at its centre only one is
+  /// looked up: the one that is nearest if the field rises straight [m].
+  float far;
 
   // NOLINTNEXTLINE(google-explicit-constructor): most searches have a margin and nothing else.
-  SearchReach(float margin_m, float sparse_m = std::numeric_limits<float>::infinity())
-      : margin(margin_m), sparse(sparse_m) {}
+  SearchReach(float margin_m, float sparse_m = std::numeric_limits<float>::infinity(),
+              float far_m = std::numeric_limits<float>::infinity())
+      : margin(margin_m), sparse(sparse_m), far(far_m) {}
+};
+
+/// A packet of points far from the other surface, and the direction in which the field rises there,
+/// in the samples' frame.
+struct FarPacket {
+  std::uint32_t packet = 0;
+  std::array<float, 3> away{};
 };
 
 /// Storage of a search, and the work it did.
@@ -56,6 +67,10 @@ struct SurfaceSearch {
   std::vector<std::uint32_t> packet;
   std::vector<std::uint32_t> next;
   std::vector<SampledPacket> sampled;
+  // Far packets, the first far_count, and the hits among their samples.
+  std::vector<FarPacket> far;
+  std::size_t far_count = 0;
+  std::vector<SurfaceHit> far_hits;
 };
 
 /// Instruction set of the kernels.
@@ -64,7 +79,7 @@ enum class Kernel : std::uint8_t { automatic, portable, avx2, avx512 };
 bool is_available(Kernel kernel);
 
 /// Finds exactly the samples whose interpolated field value is at most the margin: the same as
-/// looking at all of them. Proof in surface_search.cpp.
+/// looking at all of them. Proof in surface_search.cpp. Far packets (SearchReach) have one at most.
 void search_field(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
                   const SamplePose& pose, SearchReach reach, SurfaceSearch& search,
                   Kernel kernel = Kernel::automatic);
@@ -77,6 +92,14 @@ void search_field(const voxel::SurfaceTree& samples, const voxel::DistanceField&
 void search_field_widely(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
                          const SamplePose& pose, SearchReach reach, float wide,
                          SurfaceSearch& search, Kernel kernel = Kernel::automatic);
+
+/// The same, and the packets of points that hold every sample up to `wide`. Nothing is far:
+/// reach.far must not be less than reach.margin.
+/// @param wide  >= reach.margin [m]
+/// @param[out] list  ascending
+void search_and_list(const voxel::SurfaceTree& samples, const voxel::DistanceField& field,
+                     const SamplePose& pose, SearchReach reach, float wide, SurfaceSearch& search,
+                     std::vector<std::uint32_t>& list, Kernel kernel = Kernel::automatic);
 
 /// The same among the samples of some packets of points.
 /// @param packets  ascending
