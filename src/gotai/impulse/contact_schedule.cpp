@@ -1,12 +1,14 @@
 #include "gotai/impulse/contact_schedule.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace gotai::impulse {
 namespace {
 constexpr std::uint32_t kUnsupported = std::numeric_limits<std::uint32_t>::max();
-}
+constexpr std::uint32_t kCountedWaves = 64;  // bits of waves_used_
+}  // namespace
 
 void ContactScheduler::measure_heights(const model::BodyState& bodies,
                                        const model::ContactSet& contacts) {
@@ -83,6 +85,29 @@ void ContactScheduler::sort_top_down(const model::ContactSet& contacts) {
   });
 }
 
+std::uint32_t ContactScheduler::following_wave(const model::BodyState& bodies,
+                                               const model::ContactPair& pair) {
+  std::uint32_t wave = 0;
+  for (const model::BodyIndex i : {pair.body_a, pair.body_b})
+    if (bodies.is_dynamic(i)) wave = std::max(wave, next_wave_[i]);
+  for (const model::BodyIndex i : {pair.body_a, pair.body_b})
+    if (bodies.is_dynamic(i)) next_wave_[i] = wave + 1;
+  return wave;
+}
+
+std::uint32_t ContactScheduler::free_wave(const model::BodyState& bodies,
+                                          const model::ContactPair& pair) {
+  std::uint64_t used = 0;
+  for (const model::BodyIndex i : {pair.body_a, pair.body_b})
+    if (bodies.is_dynamic(i)) used |= waves_used_[i];
+  const auto wave = static_cast<std::uint32_t>(std::countr_one(used));
+  // Bodies with very many neighbours: their other pairs follow each other.
+  if (wave == kCountedWaves) return kCountedWaves + following_wave(bodies, pair);
+  for (const model::BodyIndex i : {pair.body_a, pair.body_b})
+    if (bodies.is_dynamic(i)) waves_used_[i] |= std::uint64_t{1} << wave;
+  return wave;
+}
+
 void ContactScheduler::assign_waves(const model::BodyState& bodies,
                                     const model::ContactSet& contacts,
                                     std::uint32_t largest_stack) {
@@ -92,17 +117,16 @@ void ContactScheduler::assign_waves(const model::BodyState& bodies,
     return island_size_[island] <= largest_stack ? IslandKind::stack : IslandKind::pile;
   };
   next_wave_.assign(bodies.size(), 0);
+  waves_used_.assign(bodies.size(), 0);
   wave_of_.resize(order_.size());
   std::array<std::uint32_t, kIslandKinds> waves{};
   for (const std::uint32_t p : order_) {
     const model::ContactPair& pair = contacts.pairs[p];
-    std::uint32_t wave = 0;
-    for (const model::BodyIndex i : {pair.body_a, pair.body_b})
-      if (bodies.is_dynamic(i)) wave = std::max(wave, next_wave_[i]);
-    for (const model::BodyIndex i : {pair.body_a, pair.body_b})
-      if (bodies.is_dynamic(i)) next_wave_[i] = wave + 1;
+    const IslandKind kind = kind_of(pair);
+    const std::uint32_t wave =
+        kind == IslandKind::pile ? free_wave(bodies, pair) : following_wave(bodies, pair);
     wave_of_[p] = wave;
-    std::uint32_t& count = waves[static_cast<std::size_t>(kind_of(pair))];
+    std::uint32_t& count = waves[static_cast<std::size_t>(kind)];
     count = std::max(count, wave + 1);
   }
   for (std::size_t k = 0; k < kIslandKinds; ++k)

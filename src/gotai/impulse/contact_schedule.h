@@ -48,6 +48,10 @@ class ContactScheduler {
   void measure_heights(const model::BodyState& bodies, const model::ContactSet& contacts);
   void measure_islands(const model::BodyState& bodies, const model::ContactSet& contacts);
   void sort_top_down(const model::ContactSet& contacts);
+  /// The first wave after those of the bodies' earlier pairs.
+  std::uint32_t following_wave(const model::BodyState& bodies, const model::ContactPair& pair);
+  /// The first wave without the bodies' earlier pairs.
+  std::uint32_t free_wave(const model::BodyState& bodies, const model::ContactPair& pair);
   void assign_waves(const model::BodyState& bodies, const model::ContactSet& contacts,
                     std::uint32_t largest_stack);
   /// Stable counting sort of order_. @param key  of a pair, < buckets
@@ -68,6 +72,7 @@ class ContactScheduler {
   std::vector<std::uint32_t> sorted_;        // storage of sort_order()
   std::vector<std::uint32_t> bucket_begin_;  // storage of sort_order()
   std::vector<std::uint32_t> next_wave_;     // per body
+  std::vector<std::uint64_t> waves_used_;    // per body, bit by bit
   std::vector<std::uint32_t> wave_of_;       // per pair
 };
 

@@ -12,7 +12,6 @@ namespace gotai::impulse {
 namespace {
 
 // Smallest numbers worth a task of their own.
-constexpr std::size_t kBatchGrain = 2;
 constexpr std::size_t kPairGrain = 64;
 constexpr std::size_t kBodyGrain = 256;
 constexpr std::size_t kLeastPerWave = 3;  // batches, about 1 us each
@@ -85,10 +84,13 @@ void SubsteppedConstraint::prepare(const model::BodyState& bodies,
   lay_out_batches(bodies);
   find_memories(memory);
   read_velocities(bodies);
-  parallel_for(batches_.size(), kBatchGrain, [&](std::size_t k) {
-    fill_batch(k, bodies, materials, memory);
-    soft_pass(SoftPass::prepare, problem(), k, 1);
+  // As stages, so that rows get into the caches of those who will sweep them.
+  add_at_once(SoftPass::prepare);
+  run_stages(stages_, kLeastPerWave, [&](SoftPass pass, std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t k = first; k < first + count; ++k) fill_batch(k, bodies, materials, memory);
+    soft_pass(pass, problem(), first, count);
   });
+  stages_.clear();
   share_loads();
   report_ = {};
   report_.rows = static_cast<std::uint32_t>(contacts.size());
@@ -131,7 +133,7 @@ void SubsteppedConstraint::lay_out_batches(const model::BodyState& bodies) {
     }
     waves_[kind].push_back({first_batch, static_cast<std::uint32_t>(batches_.size())});
   }
-  rows_.assign(rows, ContactRow{});
+  rows_.resize(rows);
 }
 
 void SubsteppedConstraint::fill_batch(std::size_t k, const model::BodyState& bodies,
@@ -142,6 +144,7 @@ void SubsteppedConstraint::fill_batch(std::size_t k, const model::BodyState& bod
   const Softness moving = softness(frequency_hz, h);
   const Softness fixed = softness(2.0 * frequency_hz, h);
   PairBatch& batch = batches_[k];
+  std::fill(rows_.begin() + batch.row_begin, rows_.begin() + batch.row_end, ContactRow{});
   for (std::uint32_t l = 0; l < batch.lanes; ++l) {
     const std::uint32_t p = schedule_->pair[in_batch_[k].first_pair + l];
     const model::ContactPair& pair = contacts_->pairs[p];
@@ -250,7 +253,9 @@ void SubsteppedConstraint::add_waves(std::size_t kind, SoftPass pass) {
 }
 
 void SubsteppedConstraint::add_at_once(SoftPass pass) {
-  stages_.push_back({pass, 0, static_cast<std::uint32_t>(batches_.size())});
+  const std::size_t first = stages_.size();
+  for (std::size_t kind = 0; kind < kIslandKinds; ++kind) add_waves(kind, pass);
+  for (std::size_t s = first + 1; s < stages_.size(); ++s) stages_[s].waits = false;
 }
 
 void SubsteppedConstraint::run_passes() {

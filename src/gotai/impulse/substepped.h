@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "gotai/core/stages.h"
 #include "gotai/impulse/contact_schedule.h"
 #include "gotai/impulse/method.h"
 #include "gotai/impulse/soft_kernel.h"
-#include "gotai/impulse/stages.h"
 
 namespace gotai::impulse {
 
@@ -95,6 +95,7 @@ class SubsteppedConstraint final : public ImpulseMethod {
   /// Adds passes wave after wave: batches of a wave share no dynamic body, so the bits do not
   /// depend on the threads.
   void add_waves(std::size_t kind, SoftPass pass);
+  /// Adds a pass that needs nothing of other batches.
   void add_at_once(SoftPass pass);
   void run_passes();
   void read_velocities(const model::BodyState& bodies);

@@ -6,6 +6,7 @@
 
 #include "gotai/core/error.h"
 #include "gotai/core/stopwatch.h"
+#include "gotai/core/thread_team.h"
 #include "gotai/dynamics/rotation.h"
 #include "gotai/dynamics/step_control.h"
 #include "gotai/world/measure.h"
@@ -19,6 +20,7 @@ World::World(const model::Settings& settings) : settings_(settings) {
 }
 
 model::StepReport World::step() {
+  const ThreadTeam team;
   Stopwatch clock;
   model::StepReport report;
   report.dt =
