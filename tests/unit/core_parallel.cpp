@@ -45,9 +45,8 @@ TEST(ParallelFor, VisitsEveryIndexOnceInATeam) {
     }
   }
   std::vector<int> nested(40, 0);
-  parallel_for(nested.size(), 1, [&](std::size_t i) {
-    parallel_for(100, 1, [&](std::size_t) { ++nested[i]; });
-  });
+  parallel_for(nested.size(), 1,
+               [&](std::size_t i) { parallel_for(100, 1, [&](std::size_t) { ++nested[i]; }); });
   for (const int n : nested) EXPECT_EQ(n, 100);
   EXPECT_THROW(parallel_for(1000, 1,
                             [](std::size_t i) {

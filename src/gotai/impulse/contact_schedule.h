@@ -20,9 +20,9 @@ enum class IslandKind : std::uint8_t {
 };
 inline constexpr std::size_t kIslandKinds = 3;
 
-/// Pairs in waves: no dynamic body occurs twice in a wave, and for every body the waves visit its
-/// pairs in top-down order, so a sweep over waves gives the same bits as the sequential top-down
-/// sweep. Waves are of one kind of island.
+/// Pairs in waves: no dynamic body occurs twice in a wave. For every body of a stack the waves
+/// visit its pairs in top-down order, so that a sweep over waves gives the same bits as the
+/// sequential top-down sweep. Waves are of one kind of island.
 struct ContactSchedule {
   std::vector<std::uint32_t> pair;        ///< indices into ContactSet::pairs, wave by wave
   std::vector<std::uint32_t> wave_begin;  ///< number of waves + 1 offsets into pair
@@ -32,11 +32,15 @@ struct ContactSchedule {
   std::size_t waves() const { return wave_begin.empty() ? 0 : wave_begin.size() - 1; }
 };
 
-/// Orders pairs from the top of every pile down to its support: a body's height is its distance in
+/// Orders pairs from the top of every stack down to its support: a body's height is its distance in
 /// contacts from bodies that do not move, and pairs come in descending height, ties by index.
 /// Top-down because impulses then meet their support last; bottom-up sweeps were seen to gain
-/// energy. Pairs of a wave are sorted by their number of contacts, so that the lanes of a batch are
-/// equally long.
+/// energy.
+///
+/// The way down a pile is long and has few pairs side by side. There, every pair in that order
+/// takes the first wave in which its bodies are free [greedy colouring]: as many waves as bodies
+/// have neighbours, wide enough for lanes and threads; piles rest no worse. Pairs of a wave are
+/// sorted by their number of contacts, so that the lanes of a batch are equally long.
 class ContactScheduler {
  public:
   /// @param largest_stack  an island of at most this many contacts, in which bodies rest on bodies
