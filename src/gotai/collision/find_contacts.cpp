@@ -156,10 +156,13 @@ void drop_distant_pairs(const model::BodyState& bodies, double dt, double margin
                         std::vector<BodyPair>& pairs) {
   std::erase_if(pairs, [&](const BodyPair& pair) {
     if (bodies.geometry[pair.body_b] != model::Geometry::shape) return false;
+    const double touching =
+        bodies.bounding_radius[pair.body_a] + bodies.bounding_radius[pair.body_b];
+    const double squared = (bodies.x_W[pair.body_a] - bodies.x_W[pair.body_b]).squaredNorm();
+    if (squared <= touching * touching) return false;
     const PairMotion motion(bodies, pair, dt);
-    const double far = bodies.bounding_radius[pair.body_a] + bodies.bounding_radius[pair.body_b] +
-                       motion.reach(margin) + kAnchorTolerance * motion.size();
-    return (bodies.x_W[pair.body_a] - bodies.x_W[pair.body_b]).squaredNorm() > far * far;
+    const double far = touching + motion.reach(margin) + kAnchorTolerance * motion.size();
+    return squared > far * far;
   });
 }
 

@@ -33,20 +33,21 @@ class PairMotion {
     size_ = 2.0 * bodies.bounding_radius[a];
     between_shapes_ = bodies.geometry[b] == model::Geometry::shape;
     if (between_shapes_) size_ = std::min(size_, 2.0 * bodies.bounding_radius[b]);
-    const Quat q_AW = bodies.q_WB[a].conjugate();
-    v_A_ =
-        q_AW * (bodies.v_W[a] - bodies.v_W[b] - bodies.w_W[b].cross(bodies.x_W[a] - bodies.x_W[b]));
-    w_A_ = q_AW * (bodies.w_W[a] - bodies.w_W[b]);
-    fastest_ = v_A_.norm() + w_A_.norm() * bodies.bounding_radius[a];
+    q_WA_ = bodies.q_WB[a];
+    const Vec3 from_b = bodies.x_W[a] - bodies.x_W[b];
+    v_W_ = bodies.v_W[a] - bodies.v_W[b] - bodies.w_W[b].cross(from_b);
+    w_W_ = bodies.w_W[a] - bodies.w_W[b];
+    const double turning = w_W_.norm();
+    fastest_ = v_W_.norm() + turning * bodies.bounding_radius[a];
     fastest_near_b_ = fastest_;
-    if (between_shapes_ && dt_ > 0.0) {
-      limit_to_lens(q_AW * (bodies.x_W[b] - bodies.x_W[a]), bodies.bounding_radius[a],
-                    bodies.bounding_radius[b]);
+    // The search of what hardly moves has nothing to gain.
+    if (between_shapes_ && farthest() > rest_reach()) {
+      limit_to_lens(-from_b, turning, bodies.bounding_radius[a], bodies.bounding_radius[b]);
     }
   }
 
   /// How a moves along b.
-  SlipField slip() const { return {v_A_, w_A_}; }
+  SlipField slip() const { return {v_A(), w_A()}; }
   /// Diameter about the smaller body.
   double size() const { return size_; }
   /// Gap up to which contacts at rest may carry.
@@ -64,13 +65,13 @@ class PairMotion {
   /// Can this contact close within the step?
   bool may_close(const ContactCandidate& c) const {
     if (!(dt_ > 0.0)) return true;
-    const double approach = std::max(0.0, -c.normal_A.dot(v_A_ + w_A_.cross(c.point_A)));
+    const double approach = std::max(0.0, -c.normal_A.dot(v_A() + w_A().cross(c.point_A)));
     return c.gap <= (kRestReach + kImpactReach) * size_ + kApproachSafety * approach * dt_;
   }
   /// The same for many contacts at a time.
   Closing closing() const {
-    const Eigen::Vector3f v = v_A_.cast<float>();
-    const Eigen::Vector3f w = w_A_.cast<float>();
+    const Eigen::Vector3f v = v_A().cast<float>();
+    const Eigen::Vector3f w = w_A().cast<float>();
     const double gap =
         dt_ > 0.0 ? (kRestReach + kImpactReach) * size_ : std::numeric_limits<double>::infinity();
     return {{v.x(), v.y(), v.z()},
@@ -82,17 +83,20 @@ class PairMotion {
  private:
   // What closes within the step is near b's sphere and in a's own: how fast is the lens between
   // them, at most, by the ball around it?
-  void limit_to_lens(const Vec3& b_A, double radius_a, double radius_b) {
+  void limit_to_lens(const Vec3& to_b, double turning, double radius_a, double radius_b) {
     const double near_b = radius_b + std::min(rest_reach() + farthest(), kFarthestReach * size_);
-    const double distance = b_A.norm();
+    const double distance = to_b.norm();
     // From a's centre to the plane through the spheres' common circle.
     const double to_plane =
         0.5 * (distance * distance + radius_a * radius_a - near_b * near_b) / distance;
     if (!(to_plane > 0.0 && to_plane < distance)) return;
     const double width = std::sqrt(std::max(0.0, radius_a * radius_a - to_plane * to_plane));
-    const Vec3 middle = (to_plane / distance) * b_A;
-    fastest_near_b_ = std::min(fastest_, (v_A_ + w_A_.cross(middle)).norm() + w_A_.norm() * width);
+    const Vec3 middle = (to_plane / distance) * to_b;
+    fastest_near_b_ = std::min(fastest_, (v_W_ + w_W_.cross(middle)).norm() + turning * width);
   }
+
+  Vec3 v_A() const { return q_WA_.conjugate() * v_W_; }
+  Vec3 w_A() const { return q_WA_.conjugate() * w_W_; }
 
   // Reaches, as fractions of size(): of contacts at rest; of what impacts elsewhere may add to the
   // approach within a step; and the farthest between shapes.
@@ -104,7 +108,8 @@ class PairMotion {
   double dt_;
   double size_;
   bool between_shapes_;
-  Vec3 v_A_, w_A_;         // of a against b, at a's centre of mass
+  Quat q_WA_;
+  Vec3 v_W_, w_W_;         // of a against b, at a's centre of mass; W
   double fastest_;         // no point of a moves faster against b [m/s]
   double fastest_near_b_;  // of those that can meet b in the step
 };

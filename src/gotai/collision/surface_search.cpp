@@ -1,7 +1,6 @@
 #include "gotai/collision/surface_search.h"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "gotai/collision/exact_surface.h"
