@@ -1,5 +1,7 @@
 #include "gotai/collision/exact_surface.h"
 
+#include <array>
+
 namespace gotai::collision {
 
 ExactSurface::ExactSurface(const voxel::Shape& shape)
@@ -7,10 +9,14 @@ ExactSurface::ExactSurface(const voxel::Shape& shape)
       tree(voxel::make_triangle_tree(surface, shape.surface.center)),
       curved(shape.surface, surface) {}
 
-voxel::ClosestPoint ExactSurface::nearest(const Vec3& x, double limit) const {
+voxel::ClosestPoint ExactSurface::nearest(const Vec3& x, double limit, double likely) const {
   const Eigen::Vector3f p = (x - tree.center).cast<float>();
-  const std::uint32_t triangle =
-      nearest_triangle(tree, {p.x(), p.y(), p.z()}, static_cast<float>(limit));
+  const std::array<float, 3> point = {p.x(), p.y(), p.z()};
+  std::uint32_t triangle = voxel::SignedDistance::kNoTriangle;
+  if (likely > 0.0) triangle = nearest_triangle(tree, point, static_cast<float>(likely));
+  if (triangle == voxel::SignedDistance::kNoTriangle) {
+    triangle = nearest_triangle(tree, point, static_cast<float>(limit));
+  }
   if (triangle == voxel::SignedDistance::kNoTriangle) return {};
   return surface.query_triangle(x, triangle);
 }

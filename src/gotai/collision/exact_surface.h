@@ -28,9 +28,10 @@ struct ExactSurface {
   explicit ExactSurface(const voxel::Shape& shape);
 
   /// The nearest point of the surface; its distance is infinite beyond the limit.
-  /// @param x      [m], mesh frame
-  /// @param limit  [m]
-  voxel::ClosestPoint nearest(const Vec3& x, double limit) const;
+  /// @param x       [m], mesh frame
+  /// @param limit   [m]
+  /// @param likely  the surface is probably nearer than this, which is looked at first [m]
+  voxel::ClosestPoint nearest(const Vec3& x, double limit, double likely = 0.0) const;
 
   voxel::SignedDistance surface;
   voxel::TriangleTree tree;

@@ -18,6 +18,7 @@ using Shapes = std::span<const std::shared_ptr<const voxel::Shape>>;
 constexpr float kFarCells = 1.0F;
 // Interpolated distances are off by less than half the diagonal of a cell [cells].
 constexpr double kFieldError = 0.9;
+constexpr double kLikelyError = 0.1;  // by less, mostly [cells]
 
 std::array<double, 9> by_rows(const Mat3& R) {
   return {R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)};
@@ -112,7 +113,9 @@ void FieldContacts::refine_in_place(const ExactSurface& exact, ContactCandidate&
   const double error = kFieldError * field_.field.cell;
   const Vec3 own_A = samples_of_b_ ? Vec3(c.point_A - c.gap * c.normal_A) : c.point_A;
   const Vec3 own_Q = samples_of_b_ ? Vec3(own_A + p_MA_) : Vec3(X_QP_ * (own_A + p_MA_));
-  const double distance = exact.nearest(own_Q, std::abs(c.gap) + error).distance;
+  const double own = std::abs(c.gap);
+  const double likely = own + kLikelyError * field_.field.cell;
+  const double distance = exact.nearest(own_Q, own + error, likely).distance;
   if (!(std::abs(distance - c.gap) <= error)) return;
   c.gap = distance;
   if (samples_of_b_) c.point_A = own_A + c.gap * c.normal_A;
