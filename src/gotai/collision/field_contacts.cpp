@@ -14,7 +14,7 @@ namespace {
 using model::BodyState;
 using Shapes = std::span<const std::shared_ptr<const voxel::Shape>>;
 
-// Contacts farther than this are impacts to come, not what bodies rest on [cells].
+// Packets farther than this hold impacts to come, not what bodies rest on [cells].
 constexpr float kFarCells = 1.0F;
 // Interpolated distances are off by less than half the diagonal of a cell [cells].
 constexpr double kFieldError = 0.9;
@@ -53,7 +53,7 @@ float FieldContacts::search_margin(double margin) {
 
 void FieldContacts::append(double margin, const PairMotion& motion, NearSamples* near, bool thin,
                            SurfaceScratch& scratch) const {
-  const SearchReach reach = search_reach(margin, thin);
+  const SearchReach reach = search_reach(margin, motion, thin);
   if (near != nullptr) {
     search_field(samples_, field_.field, pose_, reach, motion.farthest(), *near, scratch.search);
   } else {
@@ -64,7 +64,7 @@ void FieldContacts::append(double margin, const PairMotion& motion, NearSamples*
 
 double FieldContacts::append_if_near(double margin, double wide, const PairMotion& motion,
                                      bool thin, SurfaceScratch& scratch) const {
-  const SearchReach reach = search_reach(margin, thin);
+  const SearchReach reach = search_reach(margin, motion, thin);
   search_field_widely(samples_.tree, field_.field, pose_, reach, static_cast<float>(wide),
                       scratch.search);
   append_hits(reach.margin, motion, scratch);
@@ -80,16 +80,18 @@ void FieldContacts::refine(const ExactSurface& exact, ContactCandidate& c) const
   const Vec3 edge_P = edge < 0
                           ? Vec3(Vec3::Zero())
                           : to_double(samples_.tree.edge_direction[static_cast<std::size_t>(edge)]);
-  Slid best = slide(exact, own.x_P, edge_P, 0.0, limit);
+  Slid best = slide(exact, own.x_P, edge_P, 0.0, limit, own.distance);
   if (edge >= 0 && std::isfinite(best.distance)) {
     const auto& reach = samples_.tree.edge_reach[static_cast<std::size_t>(edge)];
     const double far =
         best.slope < 0.0 ? static_cast<double>(reach[1]) : -static_cast<double>(reach[0]);
-    const Slid end = slide(exact, own.x_P, edge_P, far, limit + std::abs(far));
+    const Slid end =
+        slide(exact, own.x_P, edge_P, far, limit + std::abs(far), limit + std::abs(far));
     if (far != 0.0 && std::isfinite(end.distance) && end.slope * best.slope < 0.0) {
       const double along =
           (end.distance - end.slope * far - best.distance) / (best.slope - end.slope);
-      const Slid crossing = slide(exact, own.x_P, edge_P, along, limit + std::abs(far));
+      const Slid crossing = slide(exact, own.x_P, edge_P, along, limit + std::abs(far),
+                                  best.distance + best.slope * along);
       if (std::abs(along) <= std::abs(far) && along * far >= 0.0 &&
           crossing.distance < best.distance) {
         best = crossing;
@@ -121,14 +123,15 @@ void FieldContacts::refine_in_place(const ExactSurface& exact, ContactCandidate&
   if (samples_of_b_) c.point_A = own_A + c.gap * c.normal_A;
 }
 
-// Of a packet whose samples are all far from Q, the nearest stands for all: it lies within a few
-// cells of them, and what comes near is searched again. Lists of near samples know nothing of far
-// packets; they serve smaller margins only.
-SearchReach FieldContacts::search_reach(double margin, bool thin) const {
+// Of a packet none of whose samples may carry, the nearest stands for all: it lies within a few
+// cells of them, and what comes near is searched again. Far packets are for bodies that fly: lists
+// of near samples know nothing of them, and serve smaller margins only.
+SearchReach FieldContacts::search_reach(double margin, const PairMotion& motion, bool thin) const {
   if (!thin) return search_margin(margin);
   const float far = kFarCells * field_.field.cell;
   const float reach = search_margin(margin);
-  return {reach, far, reach > far ? far : std::numeric_limits<float>::infinity()};
+  return {reach, static_cast<float>(motion.rest_reach()),
+          motion.in_step() && reach > far ? far : std::numeric_limits<float>::infinity()};
 }
 
 void FieldContacts::append_hits(float margin, const PairMotion& motion,
@@ -168,9 +171,11 @@ FieldContacts::FieldPoint FieldContacts::deepest_vertex(std::uint32_t sample, do
 }
 
 FieldContacts::Slid FieldContacts::slide(const ExactSurface& exact, const Vec3& own_P,
-                                         const Vec3& edge_P, double along, double limit) const {
+                                         const Vec3& edge_P, double along, double limit,
+                                         double expected) const {
   const Vec3 x_Q = X_QP_ * (own_P + along * edge_P);
-  const voxel::ClosestPoint nearest = exact.nearest(x_Q, limit);
+  const double likely = std::abs(expected) + kLikelyError * field_.field.cell;
+  const voxel::ClosestPoint nearest = exact.nearest(x_Q, limit, likely);
   if (!std::isfinite(nearest.distance)) return {};
   const Vec3 away = x_Q - nearest.point;
   const double length = away.norm();

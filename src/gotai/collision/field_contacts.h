@@ -43,7 +43,7 @@ class FieldContacts {
 
   /// Appends to scratch.candidates the samples with a field value up to the margin [m] that may
   /// become contacts.
-  /// @param thin  of samples that are far away, one in each packet is enough
+  /// @param thin  of samples that do not carry yet, one in each packet is enough
   /// @param near  of the last search, or null
   void append(double margin, const PairMotion& motion, NearSamples* near, bool thin,
               SurfaceScratch& scratch) const;
@@ -75,11 +75,12 @@ class FieldContacts {
   // Distance of a point of P to Q's triangles after sliding along its edge, and how it changes.
   struct Slid;
 
-  SearchReach search_reach(double margin, bool thin) const;
+  SearchReach search_reach(double margin, const PairMotion& motion, bool thin) const;
   void append_hits(float margin, const PairMotion& motion, SurfaceScratch& scratch) const;
   FieldPoint deepest_vertex(std::uint32_t sample, double gap) const;
+  // @param expected  probably no farther [m]
   Slid slide(const ExactSurface& exact, const Vec3& own_P, const Vec3& edge_P, double along,
-             double limit) const;
+             double limit, double expected) const;
 
   bool samples_of_b_;
   Vec3 p_MA_;

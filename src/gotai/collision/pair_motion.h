@@ -46,6 +46,8 @@ class PairMotion {
     }
   }
 
+  /// Is this about a step?
+  bool in_step() const { return dt_ > 0.0; }
   /// How a moves along b.
   SlipField slip() const { return {v_A(), w_A()}; }
   /// Diameter about the smaller body.
@@ -57,14 +59,14 @@ class PairMotion {
 
   /// The margin up to which contacts of this pair matter in the step.
   double reach(double margin) const {
-    if (!(dt_ > 0.0)) return margin;
+    if (!in_step()) return margin;
     const double needed = rest_reach() + fastest_near_b_ * dt_;
     return std::min({margin, needed, between_shapes_ ? kFarthestReach * size_ : needed});
   }
 
   /// Can this contact close within the step?
   bool may_close(const ContactCandidate& c) const {
-    if (!(dt_ > 0.0)) return true;
+    if (!in_step()) return true;
     const double approach = std::max(0.0, -c.normal_A.dot(v_A() + w_A().cross(c.point_A)));
     return c.gap <= (kRestReach + kImpactReach) * size_ + kApproachSafety * approach * dt_;
   }
@@ -73,7 +75,7 @@ class PairMotion {
     const Eigen::Vector3f v = v_A().cast<float>();
     const Eigen::Vector3f w = w_A().cast<float>();
     const double gap =
-        dt_ > 0.0 ? (kRestReach + kImpactReach) * size_ : std::numeric_limits<double>::infinity();
+        in_step() ? (kRestReach + kImpactReach) * size_ : std::numeric_limits<double>::infinity();
     return {{v.x(), v.y(), v.z()},
             {w.x(), w.y(), w.z()},
             static_cast<float>(gap),

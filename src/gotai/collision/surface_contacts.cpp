@@ -149,12 +149,11 @@ void find_between_shapes(const BodyState& bodies, const BodyPair& pair, Shapes s
   const bool in_step = options.dt > 0.0;
   // Bodies move on the smooth surfaces that their meshes stand for; outside steps meshes decide.
   const BothWays ways(bodies, pair, shapes, in_step ? exact : ExactSurfaces{});
-  const bool thin = reduced && in_step;
   if (near == nullptr) {
-    ways.of_a.append(reach, motion, nullptr, thin, scratch);
-    ways.of_b.append(reach, motion, nullptr, thin, scratch);
+    ways.of_a.append(reach, motion, nullptr, reduced, scratch);
+    ways.of_b.append(reach, motion, nullptr, reduced, scratch);
   } else {
-    search_and_learn(bodies, pair, shapes, ways, reach, motion, thin, scratch, *near);
+    search_and_learn(bodies, pair, shapes, ways, reach, motion, reduced, scratch, *near);
   }
   if (!reduced || scratch.candidates.empty()) return;
   reduce_candidates(pair, options, motion, scratch);
