@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxRemembered = 5;
 struct ReductionScale {
   double length = 1.0;       ///< of the smaller body [m]: moments are counted in units of it
   double depth_step = 0.0;   ///< a deeper contact replaces remembered ones only beyond this [m]
-  double resolution = 0.02;  ///< wrenches nearer than this are one (dimensionless)
+  double resolution = 0.04;  ///< wrenches nearer than this are one (dimensionless)
   /// Contacts whose gaps differ by more than this do not carry at the same time [m].
   double reach = std::numeric_limits<double>::infinity();
 };
