@@ -55,6 +55,7 @@ Pile read_pile(const Options& o) {
     pile.poses.push_back(X);
   }
   repeat(o, pile);
+  for (Pose& X : pile.poses) X.p.x() += o.shift;
   return pile;
 }
 

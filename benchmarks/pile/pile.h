@@ -20,6 +20,7 @@ struct Options {
   int level = 6;
   int threads = 1;
   int copies_x = 1, copies_y = 1;    // of the pile, side by side in one container
+  double shift = 0.0;                // of all bodies along x [m]
   std::vector<std::string> compare;  // other engines
   bool verbose = false;
   bool memory = false;

@@ -34,11 +34,16 @@ struct Rolling {
   BodyId ball;
 };
 
-// A ball on a ground that is tilted about y.
+// A ball without rolling resistance on a ground that is tilted about y.
 Rolling ball_on(Ground ground, double tilt, const test::ShapePointer& shape, double yaw,
                 const Vec3& v, const Vec3& w) {
-  World world = test::surface_world(kRollingLevel, test::surface_material(0.0, 0.5), 1.0 / 60.0,
-                                    Vec3(0, 0, -kGravity));
+  model::Settings settings;
+  settings.gravity = Vec3(0, 0, -kGravity);
+  settings.collision.level = kRollingLevel;
+  settings.time.step = 1.0 / 60.0;
+  settings.impulse.rolling_resistance = 0.0;
+  World world(settings);
+  world.set_default_material(test::surface_material(0.0, 0.5));
   const Quat q(Eigen::AngleAxisd(tilt, Vec3::UnitY()));
   if (ground == Ground::plane) {
     PlaneDescription plane;

@@ -98,6 +98,10 @@ TEST(Settings, ValidateNamesTheSetting) {
   settings.collision.level = 6;
   settings.impulse.penetration = 1e-9;
   EXPECT_THAT(message_of([&] { validate(settings); }), HasSubstr("impulse.penetration = 1e-09"));
+  settings.impulse.penetration = 1e-3;
+  settings.impulse.rolling_resistance = 1.5;
+  EXPECT_THAT(message_of([&] { validate(settings); }),
+              HasSubstr("impulse.rolling_resistance = 1.5 must be in [0, 1]"));
 }
 
 TEST(Settings, FewContactsOfTheSurfacesUnlessAnotherMethodReadsThem) {

@@ -195,6 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"[impulse]\npenetration = 0\n", "2:15", "penetration = 0 must be from 1e-6 to 0.5"},
         Mistake{"[impulse]\npenetration = 0.6\n", "2:15", "of the smallest bounding radius"},
         Mistake{"[impulse]\ntension = 1\n", "2:11", "must be true or false"},
+        Mistake{"[impulse]\nrolling_resistance = -1\n", "2:22", "must be from 0 to 1"},
         Mistake{"[time]\nstep = \"slow\"\n", "2:8", "must be \"auto\" or seconds"},
         Mistake{"[time]\nstep = 0\n", "2:8", "must be > 0"},
         Mistake{"[material]\nrestitution = 1.5\n", "2:15", "must be from 0 to 1"},
@@ -254,12 +255,13 @@ TEST(SceneOverride, ReplacesAndAddsValues) {
   const SceneDescription scene =
       parse(kShape + kBody + "[time]\nstep = 0.5\n",
             {"time.step=0.01", "impulse.method=penalty", "bodies.0.position=[0, 0, 4]",
-             "impulse.penetration=0.01", "impulse.tension=true", "materials.ice.friction=0.01",
-             "time.step=auto"});
+             "impulse.penetration=0.01", "impulse.tension=true", "impulse.rolling_resistance=0.02",
+             "materials.ice.friction=0.01", "time.step=auto"});
   EXPECT_EQ(scene.settings.time.step, 0.0);
   EXPECT_EQ(scene.settings.impulse.method, model::ImpulseMethodName::penalty);
   EXPECT_EQ(scene.settings.impulse.penetration, 0.01);
   EXPECT_TRUE(scene.settings.impulse.tension);
+  EXPECT_EQ(scene.settings.impulse.rolling_resistance, 0.02);
   EXPECT_EQ(scene.bodies[0].body.X_WM.p, Vec3(0, 0, 4));
   EXPECT_EQ(scene.materials.materials[1].name, "ice");
 }

@@ -101,9 +101,10 @@ HWY_INLINE void solve_friction(const PairBatch& batch, std::size_t l, ContactRow
 }
 
 /// Normal impulse. With a bias, overlap recovers as a damped spring of the batch's softness.
+/// @return the impulse
 template <bool kBiased>
-HWY_INLINE void solve_normal(const PairBatch& batch, std::size_t l, ContactRow& row, V inverse_h,
-                             Motion& m) {
+HWY_INLINE V solve_normal(const PairBatch& batch, std::size_t l, ContactRow& row, V inverse_h,
+                          Motion& m) {
   const Tag d;
   const V gap = load(row.gap, l);
   const V old = load(row.p_n, l);
@@ -124,6 +125,33 @@ HWY_INLINE void solve_normal(const PairBatch& batch, std::size_t l, ContactRow& 
   const V p = hn::Max(old - change, zero());
   store(p, row.p_n, l);
   push_normal(batch, l, row, p - old, m);
+  return p;
+}
+
+HWY_INLINE RollingBatch& rolling_of(const SoftProblem& problem, const PairBatch& batch) {
+  return problem.rolling[&batch - problem.batches];
+}
+
+/// Angular impulse on a, its reaction on b.
+HWY_INLINE void push_rolling(const PairBatch& batch, std::size_t l, const V3& impulse, Motion& m) {
+  m.w_a = add(m.w_a, multiply(batch.inverse_I_a, l, impulse));
+  m.w_b = subtract(m.w_b, multiply(batch.inverse_I_b, l, impulse));
+}
+
+/// A step against the relative rotation, then into the ball that the load allows. Bounded masses
+/// make every step take energy.
+/// @param pressed  sum of the normal impulses of pairs
+HWY_INLINE void resist_rolling(const PairBatch& batch, std::size_t l, RollingBatch& rolling,
+                               V pressed, Motion& m) {
+  const Tag d;
+  const V3 old = load(rolling.impulse, l);
+  const V3 wanted = add_scaled(old, zero() - load(rolling.mass, l), subtract(m.w_a, m.w_b));
+  const V limit = load(rolling.arm, l) * pressed;
+  const V length_squared = hn::Max(dot(wanted, wanted), hn::Set(d, 1e-30F));
+  const V scale = hn::Min(limit / hn::Sqrt(length_squared), hn::Set(d, 1.0F));
+  const V3 now = {wanted.x * scale, wanted.y * scale, wanted.z * scale};
+  store(now, rolling.impulse, l);
+  push_rolling(batch, l, subtract(now, old), m);
 }
 
 /// Calls visit(batch, first lane, motion) for every group of lanes in use.
@@ -171,12 +199,6 @@ HWY_INLINE V3 tangent(const V3& n) {
                 hn::IfThenElse(use_x, zero() - n.y, n.x)};
   const V scale = hn::Set(d, 1.0F) / hn::Sqrt(hn::Max(dot(t, t), hn::Set(d, 1e-30F)));
   return {t.x * scale, t.y * scale, t.z * scale};
-}
-
-HWY_INLINE void store(const V3& v, Lane3& a, std::size_t l) {
-  store(v.x, a.x, l);
-  store(v.y, a.y, l);
-  store(v.z, a.z, l);
 }
 
 HWY_INLINE void prepare_row(const PairBatch& batch, std::size_t l, ContactRow& row,
@@ -230,6 +252,8 @@ void WarmStart(const SoftProblem& problem, std::size_t first, std::size_t count)
       push_friction(batch, l, row,
                     {p_1 * t1.x + p_2 * t2.x, p_1 * t1.y + p_2 * t2.y, p_1 * t1.z + p_2 * t2.z}, m);
     }
+    if (problem.rolling != nullptr)
+      push_rolling(batch, l, load(rolling_of(problem, batch).impulse, l), m);
     scatter_pair(batch, l, m, problem.bodies);
   });
 }
@@ -243,15 +267,18 @@ HWY_INLINE void sweep(const SoftProblem& problem, std::size_t first, std::size_t
     const V pooled = batch.pools_any ? pooled_load(problem, batch, l) : zero();
     for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r)
       solve_friction(batch, l, problem.rows[r], pooled, everywhere, m);
+    V pressed = zero();
     for (std::uint32_t r = batch.row_begin; r < batch.row_end; ++r) {
       ContactRow& row = problem.rows[r];
-      solve_normal<kBiased>(batch, l, row, inverse_h, m);
+      pressed = pressed + solve_normal<kBiased>(batch, l, row, inverse_h, m);
       if constexpr (kLast) {
         store(load(row.total_n, l) + load(row.p_n, l), row.total_n, l);
         store(load(row.total_1, l) + load(row.p_1, l), row.total_1, l);
         store(load(row.total_2, l) + load(row.p_2, l), row.total_2, l);
       }
     }
+    if (problem.rolling != nullptr)
+      resist_rolling(batch, l, rolling_of(problem, batch), pressed, m);
     scatter_pair(batch, l, m, problem.bodies);
   });
 }

@@ -77,6 +77,15 @@ struct ContactRow {
   Lane approach;                   ///< normal velocity before the step [m/s]; written by prepare
 };
 
+/// Resistance of the pairs of a batch to rolling and spinning on each other: an impulse against
+/// their relative angular velocity, of at most `arm` times all that presses the pair. Padding lanes
+/// are 0.
+struct RollingBatch {
+  Lane arm;       ///< [m]
+  Lane mass;      ///< 1 / (a bound of what an angular impulse changes) [kg m^2]
+  Lane3 impulse;  ///< of the present sub-step, on a [N m s], W: the state of the sweeps
+};
+
 /// What a visit to all batches does.
 enum class SoftPass : std::uint8_t {
   prepare,       ///< fills what ContactRow says, once per step
@@ -93,8 +102,9 @@ struct SoftProblem {
   SoftBody* bodies = nullptr;
   const PairBatch* batches = nullptr;
   ContactRow* rows = nullptr;
-  float h = 0.0F;          ///< sub-step [s]
-  float threshold = 0.0F;  ///< of restitution [m/s]
+  RollingBatch* rolling = nullptr;  ///< one per batch; null: nothing resists rolling
+  float h = 0.0F;                   ///< sub-step [s]
+  float threshold = 0.0F;           ///< of restitution [m/s]
 };
 
 /// Visits batches [first, first + count) in order.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "gotai/core/parallel.h"
@@ -45,6 +46,9 @@ Softness softness(double frequency_hz, double h) {
   const double a3 = 1.0 / (1.0 + a2);
   return {omega / a1, a2 * a3, a3};
 }
+
+// Stands for a pair as a whole in the memory, after its contacts: the impulse against rolling.
+constexpr model::FeatureKey kRollingFeature = std::numeric_limits<model::FeatureKey>::max();
 
 SoftBody to_soft(const Vec3& v, const Vec3& w) {
   SoftBody body;
@@ -134,6 +138,10 @@ void SubsteppedConstraint::lay_out_batches(const model::BodyState& bodies) {
     waves_[kind].push_back({first_batch, static_cast<std::uint32_t>(batches_.size())});
   }
   rows_.resize(rows);
+  if (settings_.impulse.rolling_resistance > 0.0) {
+    rolling_.resize(batches_.size());
+    rolling_slots_.resize(contacts_->pairs.size());
+  }
 }
 
 void SubsteppedConstraint::fill_batch(std::size_t k, const model::BodyState& bodies,
@@ -145,6 +153,7 @@ void SubsteppedConstraint::fill_batch(std::size_t k, const model::BodyState& bod
   const Softness fixed = softness(2.0 * frequency_hz, h);
   PairBatch& batch = batches_[k];
   std::fill(rows_.begin() + batch.row_begin, rows_.begin() + batch.row_end, ContactRow{});
+  if (!rolling_.empty()) rolling_[k] = {};
   for (std::uint32_t l = 0; l < batch.lanes; ++l) {
     const std::uint32_t p = schedule_->pair[in_batch_[k].first_pair + l];
     const model::ContactPair& pair = contacts_->pairs[p];
@@ -170,6 +179,7 @@ void SubsteppedConstraint::fill_batch(std::size_t k, const model::BodyState& bod
     const double size = both_move ? std::min(bodies.bounding_radius[a], bodies.bounding_radius[b])
                                   : std::max(bodies.bounding_radius[a], bodies.bounding_radius[b]);
     set(batch.push_limit, l, 6.0 * size);
+    if (!rolling_.empty()) fill_rolling(p, k, l, bodies, memory);
     fill_rows(p, l, batch.row_begin, surface.friction, bodies.x_W[a], memory);
     is_sliding_[p] = is_sliding(bodies, *contacts_, pair, settings_.gravity.norm() * plan_.dt);
     if (is_sliding_[p]) slide(pair, surface.friction, bodies.x_W[a]);
@@ -195,6 +205,34 @@ void SubsteppedConstraint::fill_rows(std::uint32_t p, std::size_t lane, std::uin
     set(row.p_1, lane, impulse.y());
     set(row.p_2, lane, impulse.z());
   }
+}
+
+void SubsteppedConstraint::fill_rolling(std::uint32_t p, std::size_t k, std::uint32_t lane,
+                                        const model::BodyState& bodies,
+                                        const model::ContactMemory& memory) {
+  const auto [a, b, begin, end] = contacts_->pairs[p];
+  RollingBatch& rolling = rolling_[k];
+  rolling_slots_[p] = {static_cast<std::uint32_t>(k), lane};
+  set(rolling.arm, lane, rolling_arm(bodies, a, b));
+  const auto softest = [&](model::BodyIndex i) {
+    return bodies.is_dynamic(i) ? 1.0 / bodies.principal_moments[i][0] : 0.0;
+  };
+  set(rolling.mass, lane, 1.0 / (softest(a) + softest(b)));
+  const auto [first, last] = memory_of_[p];
+  if (first < last && memory.entries[last - 1].feature == kRollingFeature)
+    set(rolling.impulse, lane, memory.entries[last - 1].impulse_W);
+}
+
+double SubsteppedConstraint::rolling_arm(const model::BodyState& bodies, model::BodyIndex a,
+                                         model::BodyIndex b) const {
+  const double radius = bodies.is_dynamic(b)
+                            ? std::min(bodies.bounding_radius[a], bodies.bounding_radius[b])
+                            : bodies.bounding_radius[a];
+  const double speed = radius * (bodies.w_W[a] - bodies.w_W[b]).norm();
+  // What rolls in earnest is hardly braked: the resistance at rest falls by the square of the speed.
+  const double slow = 0.5 * settings_.gravity.norm() * plan_.dt;
+  const double share = speed > slow ? (slow / speed) * (slow / speed) : 1.0;
+  return radius * std::max(settings_.impulse.rolling_resistance, share * model::kRestingResistance);
 }
 
 void SubsteppedConstraint::find_memories(const model::ContactMemory& memory) {
@@ -243,7 +281,11 @@ void SubsteppedConstraint::write_changes(const model::BodyState& bodies,
 }
 
 SoftProblem SubsteppedConstraint::problem() {
-  return {velocity_.data(), batches_.data(), rows_.data(), static_cast<float>(plan_.substep_dt()),
+  return {velocity_.data(),
+          batches_.data(),
+          rows_.data(),
+          rolling_.empty() ? nullptr : rolling_.data(),
+          static_cast<float>(plan_.substep_dt()),
           static_cast<float>(2.0 * settings_.gravity.norm() * plan_.dt)};
 }
 
@@ -311,6 +353,7 @@ void SubsteppedConstraint::remember(model::ContactMemory& memory) {
   parallel_for(pairs.size(), kPairGrain, [&](std::size_t p) {
     for (std::uint32_t c = pairs[p].begin; c < pairs[p].end; ++c)
       entry_of_[p + 1] += carried(c) ? 1U : 0U;
+    if (!rolling_.empty() && entry_of_[p + 1] > 0) ++entry_of_[p + 1];
   });
   for (std::size_t p = 0; p < pairs.size(); ++p) entry_of_[p + 1] += entry_of_[p];
   memory.entries.resize(entry_of_.back());
@@ -321,6 +364,10 @@ void SubsteppedConstraint::remember(model::ContactMemory& memory) {
       memory.entries[m++] = {pairs[p].body_a, pairs[p].body_b, contacts_->feature[c],
                              impulse_of(c, &ContactRow::p_n, &ContactRow::p_1, &ContactRow::p_2)};
     }
+    if (m == entry_of_[p + 1]) return;
+    const auto [k, lane] = rolling_slots_[p];
+    memory.entries[m] = {pairs[p].body_a, pairs[p].body_b, kRollingFeature,
+                         get(rolling_[k].impulse, lane)};
   });
 }
 

@@ -66,6 +66,11 @@ class SubsteppedConstraint final : public ImpulseMethod {
   void slide(const model::ContactPair& pair, double friction, const Vec3& x_a);
   /// Where the entries of every pair are in the memory.
   void find_memories(const model::ContactMemory& memory);
+  /// Resistance of a pair to rolling, in a lane of batch k.
+  void fill_rolling(std::uint32_t p, std::size_t k, std::uint32_t lane,
+                    const model::BodyState& bodies, const model::ContactMemory& memory);
+  /// Arm of the largest torque against rolling [m].
+  double rolling_arm(const model::BodyState& bodies, model::BodyIndex a, model::BodyIndex b) const;
   void remember(model::ContactMemory& memory);
   /// Impulse of a contact [N s], W. @param p  its parts along n, t and n x t
   Vec3 impulse_of(std::uint32_t contact, Lane ContactRow::*p_n, Lane ContactRow::*p_1,
@@ -112,8 +117,10 @@ class SubsteppedConstraint final : public ImpulseMethod {
   std::vector<Contents> in_batch_;                      // per batch
   std::array<std::vector<Range>, kIslandKinds> waves_;  // of batches_, by IslandKind
   std::vector<Stage<SoftPass>> stages_;
+  std::vector<RollingBatch> rolling_;  // per batch; empty if nothing resists rolling
   std::vector<ContactRow> rows_;
   std::vector<Slot> slots_;               // per contact
+  std::vector<Slot> rolling_slots_;       // per pair: batch and lane
   std::vector<std::uint8_t> is_sliding_;  // per pair
   std::vector<Range> memory_of_;          // per pair, into the memory
   std::vector<std::uint32_t> entry_of_;   // per pair + 1: first entry of the next step's memory

@@ -105,6 +105,9 @@ void validate(const Settings& s) {
       s.impulse.penetration >= kLeastPenetration && s.impulse.penetration <= kLargestPenetration,
       "impulse.penetration", s.impulse.penetration,
       "must be in [1e-6, 0.5], a fraction of the smallest bounding radius");
+  require(s.impulse.rolling_resistance >= 0.0 && s.impulse.rolling_resistance <= 1.0,
+          "impulse.rolling_resistance", s.impulse.rolling_resistance,
+          "must be in [0, 1], a fraction of the smaller body's bounding radius");
   require(s.time.step >= 0.0 && std::isfinite(s.time.step), "time.step", s.time.step,
           "must be positive [s], or \"auto\"");
   require(s.time.safety > 0.0 && s.time.safety <= 1.0, "time.safety", s.time.safety,

@@ -37,6 +37,9 @@ struct CollisionSettings {
 inline constexpr double kLeastPenetration = 1e-6;
 inline constexpr double kLargestPenetration = 0.5;
 
+/// Rolling resistance of bodies that hardly turn, unless ImpulseSettings::rolling_resistance is 0.
+inline constexpr double kRestingResistance = 2e-2;
+
 struct ImpulseSettings {
   ImpulseMethodName method = ImpulseMethodName::constraint;
   ContactTreatment contacts = ContactTreatment::automatic;
@@ -51,6 +54,11 @@ struct ImpulseSettings {
   double penetration = 1e-3;
   /// Penalty method: dampers may pull at the end of a contact, as (2.2) assumes (erratum 2).
   bool tension = false;
+  /// Sub-stepped solver: resistance of bodies to rolling and spinning on each other, as a fraction
+  /// of the smaller one's bounding radius: the arm of a torque that at most all that presses them
+  /// has. Pairs that turn slower than gravity makes them in a step resist by kRestingResistance, if
+  /// that is more, so that piles come to rest. 0: none at all. Other solvers and methods have none.
+  double rolling_resistance = 1e-4;
 };
 
 struct TimeSettings {

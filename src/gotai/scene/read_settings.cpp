@@ -41,6 +41,9 @@ void read_impulse(TableReader& table, model::ImpulseSettings& impulse) {
                                "must be from 1e-6 to 0.5 (of the smallest bounding radius)"};
   impulse.penetration = table.number("penetration", impulse.penetration, penetrations);
   impulse.tension = table.boolean("tension", impulse.tension);
+  constexpr Range resistances{0.0, 1.0, "must be from 0 to 1 (of the smaller bounding radius)"};
+  impulse.rolling_resistance =
+      table.number("rolling_resistance", impulse.rolling_resistance, resistances);
 }
 
 void read_time(TableReader& table, model::TimeSettings& time) {
