@@ -101,7 +101,7 @@ TEST(Settings, ValidateNamesTheSetting) {
   settings.impulse.penetration = 1e-3;
   settings.impulse.rolling_resistance = 1.5;
   EXPECT_THAT(message_of([&] { validate(settings); }),
-              HasSubstr("impulse.rolling_resistance = 1.5 must be in [0, 1]"));
+              HasSubstr("impulse.rolling_resistance = 1.5: must be in [0, 1]"));
 }
 
 TEST(Settings, FewContactsOfTheSurfacesUnlessAnotherMethodReadsThem) {
