@@ -3,13 +3,14 @@
 // for, the same for other engines (--compare may be given twice).
 //
 //   bench_pile FOLDER MESH N [--seconds 5] [--level 6] [--contacts all|reduced] [--threads 1]
-//              [--copies 1x1] [--shift 0] [--compare ode|bullet] [--verbose] [--unjudged]
+//              [--copies 1x1] [--shift 0] [--rolling 1e-4] [--compare ode|bullet] [--verbose]
+//              [--unjudged]
 //   bench_pile FOLDER MESH N --memory
 //
 // --copies 3x2 puts six copies of the pile side by side into one container; --shift 1e-7 starts all
-// bodies so many metres further along x, for another run of the same kind; --unjudged leaves out
-// how far the meshes overlap, which takes longer than the run; --memory prints what shapes, bodies
-// and contacts take instead of running for the time.
+// bodies so many metres further along x, for another run of the same kind; --rolling sets the
+// rolling resistance; --unjudged leaves out how far the meshes overlap, which takes longer than the
+// run; --memory prints what shapes, bodies and contacts take instead of running for the time.
 // FOLDER holds MESH.obj and MESH_N.csv: poses px,py,pz,qw,qx,qy,qz after a line
 // "# bodies container_inner_edge_m container_height_m: N EDGE HEIGHT".
 #include <fmt/format.h>
@@ -28,8 +29,8 @@ pile::Options parse(int argc, char** argv) {
   if (argc < 4) {
     throw InvalidArgument("arguments", fmt::format("{}", argc - 1),
                           "bench_pile FOLDER MESH N [--seconds S] [--level L] [--contacts C] "
-                          "[--threads T] [--copies XxY] [--shift M] [--compare ode|bullet] "
-                          "[--verbose] [--unjudged] [--memory]");
+                          "[--threads T] [--copies XxY] [--shift M] [--rolling R] "
+                          "[--compare ode|bullet] [--verbose] [--unjudged] [--memory]");
   }
   pile::Options o;
   o.folder = argv[1];
@@ -64,6 +65,8 @@ pile::Options parse(int argc, char** argv) {
       o.copies_y = std::stoi(value.substr(by + 1));
     } else if (key == "--shift") {
       o.shift = std::stod(value);
+    } else if (key == "--rolling") {
+      o.rolling_resistance = std::stod(value);
     } else if (key == "--contacts") {
       o.contacts = model::parse_contact_treatment(value);
     } else if (key == "--compare") {

@@ -19,8 +19,9 @@ struct Options {
   double seconds = 5.0;
   int level = 6;
   int threads = 1;
-  int copies_x = 1, copies_y = 1;    // of the pile, side by side in one container
-  double shift = 0.0;                // of all bodies along x [m]
+  int copies_x = 1, copies_y = 1;  // of the pile, side by side in one container
+  double shift = 0.0;              // of all bodies along x [m]
+  double rolling_resistance = model::ImpulseSettings().rolling_resistance;
   std::vector<std::string> compare;  // other engines
   bool verbose = false;
   bool memory = false;

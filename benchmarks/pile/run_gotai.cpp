@@ -58,6 +58,7 @@ World make_world(const Options& o, const Pile& pile, const ShapePointer& prepare
   settings.collision.model = model::CollisionModel::surface;
   settings.collision.level = o.level;
   settings.impulse.contacts = o.contacts;
+  settings.impulse.rolling_resistance = o.rolling_resistance;
   settings.time.step = kStep;
   World world(settings);
   model::Material material;
