@@ -5,12 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "gotai/core/parallel.h"
+
 namespace gotai::collision {
 
 namespace {
 
 // Octaves of body sizes that get a counter of their own; sizes beyond share the outermost ones.
 constexpr int kOctaves = 128;
+
+// Rows of cells that are paired by one task. More tasks than threads, so that they end together.
+constexpr std::size_t kRowChunks = 16;
 
 /// Smallest and largest diameter of the bodies of one octave of sizes.
 struct SizeRange {
@@ -58,7 +63,7 @@ BroadPhase::Cell BroadPhase::Grid::cell_of(double x, double y, double z) const {
 
 void BroadPhase::find_pairs(const model::BodyState& bodies, std::span<const double> radius,
                             double margin, std::vector<BodyPair>& out) {
-  found_.clear();
+  for (std::vector<BodyPair>& found : found_) found.clear();
   make_size_classes(bodies, radius, margin);
   for (std::size_t g = 0; g < grid_count_; ++g) {
     fill_grid(grids_[g]);
@@ -158,7 +163,7 @@ void BroadPhase::fill_grid(Grid& grid) {
   }
 }
 
-void BroadPhase::test(const Entry& a, const Entry& b, double margin) {
+void BroadPhase::test(const Entry& a, const Entry& b, double margin, std::vector<BodyPair>& found) {
   const double dx = a.x - b.x;
   const double dy = a.y - b.y;
   const double dz = a.z - b.z;
@@ -167,45 +172,58 @@ void BroadPhase::test(const Entry& a, const Entry& b, double margin) {
   if (dx * dx + dy * dy + dz * dz > reach * reach * (1.0 + 1e-12)) return;
   if (!a.dynamic && !b.dynamic) return;
   const bool a_first = a.dynamic == b.dynamic ? a.body < b.body : a.dynamic;
-  found_.push_back(a_first ? BodyPair{a.body, b.body} : BodyPair{b.body, a.body});
+  found.push_back(a_first ? BodyPair{a.body, b.body} : BodyPair{b.body, a.body});
 }
 
 void BroadPhase::pair_within(const Grid& grid, double margin) {
+  const std::size_t rows = (grid.mask[1] + std::size_t{1}) * (grid.mask[2] + std::size_t{1});
+  const std::size_t size = (rows + kRowChunks - 1) / kRowChunks;
+  const std::size_t chunks = (rows + size - 1) / size;
+  if (found_.size() < chunks + 1) found_.resize(chunks + 1);
+  // Less work than this is done before another thread has woken up.
+  constexpr std::size_t kFewEntries = 256;
+  const std::size_t grain = grid.entries.size() < kFewEntries ? chunks : 1;
+  parallel_for(chunks, grain, [&](std::size_t c) {
+    for (std::size_t row = c * size; row < std::min(rows, (c + 1) * size); ++row) {
+      pair_row(grid, static_cast<std::uint32_t>(row), margin, found_[c + 1]);
+    }
+  });
+}
+
+void BroadPhase::pair_row(const Grid& grid, std::uint32_t row, double margin,
+                          std::vector<BodyPair>& found) {
   const auto against = [&](std::uint32_t begin, std::uint32_t end, std::uint32_t first_cell,
                            std::uint32_t last_cell) {
     const std::uint32_t other_begin = grid.begin[first_cell];
     const std::uint32_t other_end = grid.begin[last_cell + 1];
     for (std::uint32_t i = begin; i < end; ++i) {
       for (std::uint32_t j = other_begin; j < other_end; ++j) {
-        test(grid.entries[i], grid.entries[j], margin);
+        test(grid.entries[i], grid.entries[j], margin, found);
       }
     }
   };
   // Half of the 26 neighbours: every pair of cells is visited once.
   constexpr std::array<std::array<std::uint32_t, 2>, 4> kRows{
       {{1, 0}, {~0U, 1}, {0, 1}, {1, 1}}};  // (dy, dz); ~0 wraps to -1
-  for (std::uint32_t z = 0; z <= grid.mask[2]; ++z) {
-    for (std::uint32_t y = 0; y <= grid.mask[1]; ++y) {
-      for (std::uint32_t x = 0; x <= grid.mask[0]; ++x) {
-        const std::uint32_t cell = grid.index({x, y, z});
-        const std::uint32_t begin = grid.begin[cell];
-        const std::uint32_t end = grid.begin[cell + 1];
-        if (begin == end) continue;
-        for (std::uint32_t i = begin; i < end; ++i) {
-          for (std::uint32_t j = i + 1; j < end; ++j) {
-            test(grid.entries[i], grid.entries[j], margin);
-          }
-        }
-        const std::uint32_t next = grid.index({(x + 1) & grid.mask[0], y, z});
-        against(begin, end, next, next);
-        const Runs runs = consecutive_cells((x - 1) & grid.mask[0], 3, grid.mask[0]);
-        for (const auto& [dy, dz] : kRows) {
-          const std::uint32_t row =
-              grid.index({0, (y + dy) & grid.mask[1], (z + dz) & grid.mask[2]});
-          for (std::size_t r = 0; r < runs.count; ++r) {
-            against(begin, end, row + runs.run[r][0], row + runs.run[r][1]);
-          }
-        }
+  const std::uint32_t y = row % (grid.mask[1] + 1);
+  const std::uint32_t z = row / (grid.mask[1] + 1);
+  for (std::uint32_t x = 0; x <= grid.mask[0]; ++x) {
+    const std::uint32_t cell = grid.index({x, y, z});
+    const std::uint32_t begin = grid.begin[cell];
+    const std::uint32_t end = grid.begin[cell + 1];
+    if (begin == end) continue;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      for (std::uint32_t j = i + 1; j < end; ++j) {
+        test(grid.entries[i], grid.entries[j], margin, found);
+      }
+    }
+    const std::uint32_t next = grid.index({(x + 1) & grid.mask[0], y, z});
+    against(begin, end, next, next);
+    const Runs runs = consecutive_cells((x - 1) & grid.mask[0], 3, grid.mask[0]);
+    for (const auto& [dy, dz] : kRows) {
+      const std::uint32_t other = grid.index({0, (y + dy) & grid.mask[1], (z + dz) & grid.mask[2]});
+      for (std::size_t r = 0; r < runs.count; ++r) {
+        against(begin, end, other + runs.run[r][0], other + runs.run[r][1]);
       }
     }
   }
@@ -228,7 +246,7 @@ void BroadPhase::pair_across(const Grid& fine, const Grid& coarse, double margin
         for (std::size_t r = 0; r < runs.count; ++r) {
           const std::uint32_t end = coarse.begin[row + runs.run[r][1] + 1];
           for (std::uint32_t j = coarse.begin[row + runs.run[r][0]]; j < end; ++j) {
-            test(e, coarse.entries[j], margin);
+            test(e, coarse.entries[j], margin, found_[0]);
           }
         }
       }
@@ -250,7 +268,7 @@ void BroadPhase::pair_unbounded(const model::BodyState& bodies, std::span<const 
       const bool touches = bodies.geometry[u] == model::Geometry::plane
                                ? center.z() <= reach
                                : reaches_container(center, reach, bodies.half_extent[u]);
-      if (touches) found_.push_back({body, static_cast<model::BodyIndex>(u)});
+      if (touches) found_[0].push_back({body, static_cast<model::BodyIndex>(u)});
     }
   }
 }
@@ -258,11 +276,15 @@ void BroadPhase::pair_unbounded(const model::BodyState& bodies, std::span<const 
 void BroadPhase::sort_pairs(std::size_t body_count, std::vector<BodyPair>& out) {
   // Counting sort by body_a; the few pairs of one body are then sorted by body_b.
   first_.assign(body_count + 1, 0);
-  for (const BodyPair& p : found_) ++first_[p.body_a];
+  for (const std::vector<BodyPair>& found : found_) {
+    for (const BodyPair& p : found) ++first_[p.body_a];
+  }
   std::uint32_t sum = 0;
   for (std::uint32_t& f : first_) f = (sum += f);
-  out.resize(found_.size());
-  for (std::size_t i = found_.size(); i-- > 0;) out[--first_[found_[i].body_a]] = found_[i];
+  out.resize(sum);
+  for (const std::vector<BodyPair>& found : found_) {
+    for (const BodyPair& p : found) out[--first_[p.body_a]] = p;
+  }
   for (std::size_t a = 0; a < body_count; ++a) {
     std::sort(out.begin() + first_[a], out.begin() + first_[a + 1],
               [](const BodyPair& p, const BodyPair& q) { return p.body_b < q.body_b; });

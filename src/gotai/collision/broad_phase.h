@@ -70,14 +70,17 @@ class BroadPhase {
   void pair_across(const Grid& fine, const Grid& coarse, double margin);
   void pair_unbounded(const model::BodyState& bodies, std::span<const double> radius,
                       double margin);
-  void test(const Entry& a, const Entry& b, double margin);
+  static void pair_row(const Grid& grid, std::uint32_t row, double margin,
+                       std::vector<BodyPair>& found);
+  static void test(const Entry& a, const Entry& b, double margin, std::vector<BodyPair>& found);
   void sort_pairs(std::size_t body_count, std::vector<BodyPair>& out);
 
   std::vector<Grid> grids_;  // from the finest to the coarsest; the first grid_count_ are in use
   std::size_t grid_count_ = 0;
-  std::vector<std::uint32_t> cell_;   // per entry, while a grid is filled
-  std::vector<Entry> unsorted_;       // likewise
-  std::vector<BodyPair> found_;       // in the order of the search
+  std::vector<std::uint32_t> cell_;  // per entry, while a grid is filled
+  std::vector<Entry> unsorted_;      // likewise
+  // In any order: of several grids and planes, then of the rows of a grid, task by task.
+  std::vector<std::vector<BodyPair>> found_{1};
   std::vector<std::uint32_t> first_;  // per body: offset of its pairs as body_a
 };
 
