@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gotai/collision/broad_phase.h"
+#include "gotai/core/parallel.h"
 #include "gotai/core/random.h"
 #include "support/voxel_shapes.h"
 
@@ -87,6 +88,22 @@ TEST_P(RandomScenes, EqualBruteForce) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenes, ::testing::Range(1, 40));
+
+// Enough bodies for rows of cells to be shared among threads; two classes of sizes.
+TEST(BroadPhase, TheSamePairsForAnyNumberOfThreads) {
+  Random random(61);
+  Spheres scene;
+  for (int i = 0; i < 900; ++i) {
+    const Vec3 x(random.uniform(0.0, 6.0), random.uniform(0.0, 6.0), random.uniform(0.0, 6.0));
+    scene.add(x, i % 3 == 0 ? 0.1 : 0.3, i % 7 != 0);
+  }
+  const std::vector<BodyPair> expected = brute_force(scene, 0.05);
+  EXPECT_GT(expected.size(), 1000U);
+  for (const int threads : {1, 2, 4}) {
+    const ThreadLimit limit(threads);
+    EXPECT_EQ(find_pairs(scene, 0.05), expected) << threads;
+  }
+}
 
 TEST(BroadPhase, OneGiantAmongManySmallBodies) {
   Random random(7);
