@@ -61,11 +61,14 @@ class StageRun {
   using Stops = std::array<std::uint32_t, kMostThreads>;
   /// What a thread is to do. Stages are counted up to and with that of the last chunk claimed,
   /// done.
-  struct alignas(64) Part {
+  struct alignas(64) Claims {
     std::atomic<std::uint32_t> claimed{0};
     std::atomic<bool> is_here{false};
-    alignas(64) std::atomic<std::uint32_t> done{0};
   };
+  struct alignas(64) Done {
+    std::atomic<std::uint32_t> done{0};
+  };
+  struct Part : Claims, Done {};
 
   bool has_chunk(std::size_t thread, std::uint32_t stage) const {
     return thread < stages_[stage].count;
@@ -129,10 +132,10 @@ class StageRun {
     return do_chunk(thread, claimed, next);
   }
 
+  std::array<Part, kMostThreads> parts_;
   std::span<const Stage<Kind>> stages_;
   std::size_t threads_;
   const Work& work_;
-  std::array<Part, kMostThreads> parts_;
   std::atomic<bool> failed_{false};
 };
 
