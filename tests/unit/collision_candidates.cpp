@@ -216,18 +216,19 @@ TEST(Candidates, HaveTheSameBitsOnEveryKernel) {
         const auto& points = c.p.surface.tree.vertex;
         if (points.empty()) continue;
         const std::size_t count = std::min<std::size_t>(points.size(), 37);
-        std::vector<float> one(count);
-        std::vector<float> two(count);
-        look_up_distances(near.field, near.pose, 0.1F, std::span(points).first(count), one,
-                          Kernel::portable);
-        look_up_distances(near.field, near.pose, 0.1F, std::span(points).first(count), two, kernel);
-        ASSERT_EQ(one, two);
+        std::vector<FieldAtPoint> one(count);
+        std::vector<FieldAtPoint> two(count);
+        look_up_field(near.field, near.pose, 0.1F, std::span(points).first(count), one,
+                      Kernel::portable);
+        look_up_field(near.field, near.pose, 0.1F, std::span(points).first(count), two, kernel);
         for (std::size_t i = 0; i < count; ++i) {
+          ASSERT_EQ(one[i].distance, two[i].distance);
+          ASSERT_EQ(one[i].slope, two[i].slope);
           const double exact = voxel::evaluate(near.field, c.X_QP * to_double(points[i])).distance;
           if (exact < 0.1 - 1e-5) {
-            ASSERT_NEAR(static_cast<double>(one[i]), exact, 2e-6);
+            ASSERT_NEAR(static_cast<double>(one[i].distance), exact, 2e-6);
           } else {
-            ASSERT_GT(one[i], 0.1F - 2e-5F);
+            ASSERT_GT(one[i].distance, 0.1F - 2e-5F);
           }
         }
       }

@@ -19,6 +19,7 @@ struct ContactCandidate {
   /// Centre of the surface it stands for [m]; friction acts there.
   Vec3 share_A = Vec3::Zero();
   model::FeatureKey feature = 0;
+  bool crosses = false;    ///< it is where two edges cross, beside its sample
   bool near_edge = false;  ///< the field is not smooth there: its distance is rounded
 };
 

@@ -28,6 +28,16 @@ struct SurfaceScratch {
   double reduction_error = 0.0;  ///< largest Reduction::error so far
 };
 
+/// How far contacts are looked for.
+struct FieldReach {
+  double kept;  ///< largest gap of a candidate [m]
+  double
+      searched;  ///< of a sample, >= kept: those beside a crossing of edges are farther apart [m]
+  /// Contacts get reduced: of samples that are far away one in each packet is enough, and samples
+  /// of edges move to where they cross Q's.
+  bool reduced;
+};
+
 /// Samples of one body of a pair, P, in the field of the other, Q, at the present poses.
 class FieldContacts {
  public:
@@ -41,15 +51,14 @@ class FieldContacts {
   /// Largest float that is not above the margin, so that searches keep the promise of the margin.
   static float search_margin(double margin);
 
-  /// Appends to scratch.candidates the samples with a field value up to the margin [m] that may
-  /// become contacts.
-  /// @param thin  of samples that do not carry yet, one in each packet is enough
+  /// Appends to scratch.candidates the samples near Q that may become contacts.
   /// @param near  of the last search, or null
-  void append(double margin, const PairMotion& motion, NearSamples* near, bool thin,
+  void append(const FieldReach& reach, const PairMotion& motion, NearSamples* near,
               SurfaceScratch& scratch) const;
-  /// The same for bodies that are probably farther apart than `wide` [m], a float >= margin.
+  /// The same for bodies that are probably farther apart than `wide` [m], a float >= what is
+  /// searched.
   /// @return how far apart they are: SurfaceSearch::clearance [m]
-  double append_if_near(double margin, double wide, const PairMotion& motion, bool thin,
+  double append_if_near(const FieldReach& reach, double wide, const PairMotion& motion,
                         SurfaceScratch& scratch) const;
 
   /// Replaces gap and normal by those of Q's triangles. A sample of a face first gives way to the
@@ -60,11 +69,11 @@ class FieldContacts {
   /// jump.
   void refine(const ExactSurface& exact, ContactCandidate& c) const;
 
-  /// Replaces the gap by the distance of the sample itself to Q's triangles, for contacts that push
-  /// in a step. Following edges and faces would be exact for one pose, but their nearest points and
-  /// normals jump as bodies rock, and piles never rest (of 500 hexapods 492 kept moving, at 3e-3
-  /// m/s).
-  void refine_in_place(const ExactSurface& exact, ContactCandidate& c) const;
+  /// Replaces the gap by the distance to Q's triangles, for contacts that push in a step: of the
+  /// sample itself or, where its edge passes over an edge of Q, of where the edges cross, with
+  /// their common normal. Nothing jumps when bodies rock: faces are not followed, and an edge that
+  /// is nearly parallel to a face only in part (kSteep), since else piles never rest.
+  void refine_in_step(const ExactSurface& exact, ContactCandidate& c) const;
 
  private:
   // A point of P in Q's field.
@@ -75,9 +84,13 @@ class FieldContacts {
   // Distance of a point of P to Q's triangles after sliding along its edge, and how it changes.
   struct Slid;
 
-  SearchReach search_reach(double margin, const PairMotion& motion, bool thin) const;
-  void append_hits(float margin, const PairMotion& motion, SurfaceScratch& scratch) const;
+  SearchReach search_reach(const FieldReach& reach, const PairMotion& motion) const;
+  float beside_crossings(const FieldReach& reach, const PairMotion& motion) const;
+  void append_hits(const FieldReach& reach, const PairMotion& motion,
+                   SurfaceScratch& scratch) const;
   FieldPoint deepest_vertex(std::uint32_t sample, double gap) const;
+  void refine_crossing(const ExactSurface& exact, const Vec3& own_Q, ContactCandidate& c) const;
+  void put_at(const Vec3& x_P, ContactCandidate& c) const;
   // @param expected  probably no farther [m]
   Slid slide(const ExactSurface& exact, const Vec3& own_P, const Vec3& edge_P, double along,
              double limit, double expected) const;
@@ -90,6 +103,7 @@ class FieldContacts {
   Mat3 R_QP_;
   SamplePose pose_;
   const CurvedSamples* curved_ = nullptr;  // of P
+  bool is_exact_ = false;                  // Q's triangles are at hand
 };
 
 }  // namespace gotai::collision

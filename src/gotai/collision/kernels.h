@@ -36,9 +36,9 @@ struct KernelTable {
                                     const std::array<float, 3>& point, float limit);
   void (*make_candidates)(const NearSurface& near, float margin, const Closing& closing,
                           const HitLanes* hits, std::size_t packets, CandidateLanes* out);
-  void (*look_up_distances)(const voxel::DistanceField& field, const SamplePose& pose, float margin,
-                            std::span<const std::array<float, 3>> points,
-                            std::span<float> distances);
+  void (*look_up_field)(const voxel::DistanceField& field, const SamplePose& pose, float margin,
+                        std::span<const std::array<float, 3>> points,
+                        std::span<FieldAtPoint> values);
   FarthestWrench (*keep_wrench)(WrenchLanes& lanes, std::uint32_t chosen, std::uint32_t position,
                                 float same);
 };

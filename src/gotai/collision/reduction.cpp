@@ -210,4 +210,34 @@ void reduce_contacts(std::span<ContactCandidate> candidates,
   chooser.share(slip);
 }
 
+void drop_far_and_twins(std::span<ContactCandidate> candidates, double farthest, double length,
+                        Reduction& reduction) {
+  constexpr double kSamePoint = 1e-3;  // of the length
+  constexpr double kSameNormal = 0.02;
+  if (!reduction.sliding.empty()) return;
+  const double same_point = kSamePoint * length;
+  const auto are_twins = [&](const ContactCandidate& c, const ContactCandidate& d) {
+    return (c.point_A - d.point_A).squaredNorm() < same_point * same_point &&
+           (c.normal_A - d.normal_A).squaredNorm() < kSameNormal * kSameNormal;
+  };
+  std::vector<std::uint32_t>& kept = reduction.kept;
+  std::size_t count = 0;
+  for (const std::uint32_t k : kept) {
+    const ContactCandidate& c = candidates[k];
+    if (c.gap > farthest) continue;
+    const auto others = std::span(kept).first(count);
+    const auto twin = std::ranges::find_if(
+        others, [&](std::uint32_t other) { return are_twins(candidates[other], c); });
+    if (twin == others.end()) {
+      kept[count++] = k;
+      continue;
+    }
+    ContactCandidate& first = candidates[*twin];
+    const double area = first.area + c.area;
+    first.share_A = (first.area * first.share_A + c.area * c.share_A) / area;
+    first.area = area;
+  }
+  kept.resize(count);
+}
+
 }  // namespace gotai::collision

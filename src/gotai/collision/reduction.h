@@ -51,4 +51,12 @@ void reduce_contacts(std::span<ContactCandidate> candidates,
                      const ReductionScale& scale, Reduction& reduction,
                      const SlipField* slip = nullptr);
 
+/// Drops kept contacts that turned out to be farther than they looked, and of those that are the
+/// same all but the first, which gets their areas: where edges cross, several samples of both
+/// bodies tell of one contact. Flat patches that slide stay as they are.
+/// @param farthest  gap [m]
+/// @param length    of the bodies [m]
+void drop_far_and_twins(std::span<ContactCandidate> candidates, double farthest, double length,
+                        Reduction& reduction);
+
 }  // namespace gotai::collision

@@ -60,6 +60,8 @@ void collect(const NearSurface& near, std::span<const SurfaceHit> hits, HitLanes
     to.any_edge |= edge >= 0;
     put(edge < 0 ? std::array<float, 3>{} : tree.edge_direction[static_cast<std::size_t>(edge)],
         to.along, lane);
+    to.reach_back[lane] = edge < 0 ? 0.0F : tree.edge_reach[static_cast<std::size_t>(edge)][0];
+    to.reach_forward[lane] = edge < 0 ? 0.0F : tree.edge_reach[static_cast<std::size_t>(edge)][1];
     if (near.curved != nullptr) bulges[lane] = near.curved->find(s);
     to.any_bulge |= bulges[lane] != nullptr;
   }
@@ -92,6 +94,7 @@ void append_lanes(const NearSurface& near, std::span<const SurfaceHit> hits,
     c.area = static_cast<double>(from.area[lane]);
     c.share_A = c.point_A;
     c.feature = surface_feature(near.samples_of_b ? 1 : 0, s);
+    c.crosses = (from.crosses >> lane & 1U) != 0U;
     c.near_edge = (from.rough >> lane & 1U) != 0U || tree.edge[s] >= 0 ||
                   tree.first_vertex[s] < tree.first_vertex[s + 1];
   }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct NearSurface {
   std::array<double, 9> rotation_AP;   ///< from P's axes to those of body a, row by row
   std::array<double, 3> origin_A;      ///< of P's frame S, from a's centre of mass [m], A
   bool samples_of_b = false;           ///< P is body b of the pair
+  float kept = std::numeric_limits<float>::infinity();  ///< largest gap of a candidate [m]
+  float beside = 0.0F;  ///< samples with gaps up to this move to where edges cross [m]
 };
 
 /// What the kernel reads of eight hits and their samples. Frame S of P.
@@ -43,6 +46,7 @@ struct alignas(32) HitLanes {
   std::array<Lanes, 3> axis;                       ///< of the normal cone, unit
   Lanes cosine;                                    ///< of its half angle
   std::array<Lanes, 3> along;                      ///< the edge of an edge's sample, unit; else 0
+  Lanes reach_back, reach_forward;                 ///< along it [m]
   std::array<Lanes, 3> area;                       ///< integral of the outward normal [m^2]
   Lanes bulge;                                     ///< 1: the surface is curved there; else 0
   std::array<Lanes, 3> bulge_point, bulge_normal;  ///< of CurvedSample
@@ -57,8 +61,9 @@ struct alignas(64) CandidateLanes {
   std::array<Wide, 3> point;   ///< on body a [m]
   std::array<Wide, 3> normal;  ///< from b to a, unit to single precision
   std::array<float, voxel::kLanes> gap, area;
-  std::uint32_t counts;  ///< mask of the lanes that are candidates
-  std::uint32_t rough;   ///< mask of the lanes where the field is not smooth
+  std::uint32_t counts;   ///< mask of the lanes that are candidates
+  std::uint32_t crosses;  ///< mask of the lanes where edges cross
+  std::uint32_t rough;    ///< mask of the lanes where the field is not smooth
 };
 
 /// Storage.
@@ -81,10 +86,16 @@ void append_candidates(const NearSurface& near, std::span<const SurfaceHit> hits
                        const Closing& closing, CandidateScratch& scratch,
                        std::vector<ContactCandidate>& out, Kernel kernel = Kernel::automatic);
 
-/// Values of Q's field at points of P [m]; what is above `margin` may be any value above it.
+/// Q's field at a point of P.
+struct FieldAtPoint {
+  float distance;              ///< [m]
+  std::array<float, 3> slope;  ///< of the field, in P's axes
+};
+
+/// Q's field at points of P [m]; what is above `margin` may be any value above it.
 /// @param points  frame S of P [m]
-void look_up_distances(const voxel::DistanceField& field, const SamplePose& pose, float margin,
-                       std::span<const std::array<float, 3>> points, std::span<float> distances,
-                       Kernel kernel = Kernel::automatic);
+void look_up_field(const voxel::DistanceField& field, const SamplePose& pose, float margin,
+                   std::span<const std::array<float, 3>> points, std::span<FieldAtPoint> values,
+                   Kernel kernel = Kernel::automatic);
 
 }  // namespace gotai::collision

@@ -63,7 +63,7 @@ void refine_kept(const BothWays& ways, const ExactSurface* exact_a, const ExactS
     const ExactSurface* surface = is_of_b ? exact_a : exact_b;
     if (surface == nullptr) continue;
     if (in_step) {
-      field.refine_in_place(*surface, c);
+      field.refine_in_step(*surface, c);
     } else if (c.near_edge) {
       field.refine(*surface, c);
     }
@@ -115,7 +115,7 @@ void reduce_candidates(const BodyPair& pair, const SearchOptions& options, const
 
 // Searches both ways, and learns what may spare the next searches.
 void search_and_learn(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
-                      const BothWays& ways, double reach, const PairMotion& motion, bool thin,
+                      const BothWays& ways, const FieldReach& reach, const PairMotion& motion,
                       SurfaceScratch& scratch, NearPair& near) {
   near.apart = false;
   near.clearance = -1.0;
@@ -123,14 +123,15 @@ void search_and_learn(const BodyState& bodies, const BodyPair& pair, Shapes shap
     near.way[0].forget();
     near.way[1].forget();
     const double cell = static_cast<double>(shapes[bodies.shape[pair.body_a]]->surface.field.cell);
-    near.clear_up_to = static_cast<double>(FieldContacts::search_margin(reach + kBeyond * cell));
-    const double of_a = ways.of_a.append_if_near(reach, near.clear_up_to, motion, thin, scratch);
-    const double of_b = ways.of_b.append_if_near(reach, near.clear_up_to, motion, thin, scratch);
+    near.clear_up_to =
+        static_cast<double>(FieldContacts::search_margin(reach.searched + kBeyond * cell));
+    const double of_a = ways.of_a.append_if_near(reach, near.clear_up_to, motion, scratch);
+    const double of_b = ways.of_b.append_if_near(reach, near.clear_up_to, motion, scratch);
     near.clearance = std::min(of_a, of_b);
     near.distant = near.clearance >= 0.0;
   } else {
-    ways.of_a.append(reach, motion, &near.way[0], thin, scratch);
-    ways.of_b.append(reach, motion, &near.way[1], thin, scratch);
+    ways.of_a.append(reach, motion, &near.way[0], scratch);
+    ways.of_b.append(reach, motion, &near.way[1], scratch);
     const auto has_list = [](const NearSamples& way) { return way.margin >= 0.0F; };
     near.apart = std::ranges::all_of(
         near.way, [&](const NearSamples& way) { return has_list(way) && way.packets.empty(); });
@@ -139,27 +140,45 @@ void search_and_learn(const BodyState& bodies, const BodyPair& pair, Shapes shap
   if (near.apart || near.distant) near.X_BA = body_pose(bodies, pair);
 }
 
+// Samples beside a crossing of edges are farther than the crossing: they are searched for up to a
+// cell, which is as far as lists of near samples go.
+double reach_beside_crossings(const voxel::SurfaceModel& a, const voxel::SurfaceModel& b,
+                              double reach) {
+  constexpr double kBeside = 0.4;  // of the spacing
+  if (a.tree.edge_direction.empty() || b.tree.edge_direction.empty()) return reach;
+  const auto cell = static_cast<double>(std::min(a.field.cell, b.field.cell));
+  return std::max(reach, std::min(cell, reach + kBeside * std::max(a.spacing, b.spacing)));
+}
+
 // Finds the candidates for contacts of two shapes at the present poses, and reduces them if asked
 // for.
 void find_between_shapes(const BodyState& bodies, const BodyPair& pair, Shapes shapes,
-                         ExactSurfaces exact, double reach, const PairMotion& motion,
+                         ExactSurfaces exact, double kept, const PairMotion& motion,
                          const SearchOptions& options, SurfaceScratch& scratch, NearPair* near) {
-  if (near != nullptr && is_still_apart(*near, bodies, pair, shapes, reach)) return;
+  const std::uint32_t shape_a = bodies.shape[pair.body_a];
+  const std::uint32_t shape_b = bodies.shape[pair.body_b];
   const bool reduced = options.contacts == model::ContactTreatment::reduced;
   const bool in_step = options.dt > 0.0;
+  FieldReach reach{kept, kept, reduced};
+  if (reduced && in_step) {
+    reach.searched =
+        reach_beside_crossings(shapes[shape_a]->surface, shapes[shape_b]->surface, kept);
+  }
+  if (near != nullptr && is_still_apart(*near, bodies, pair, shapes, reach.searched)) return;
   // Bodies move on the smooth surfaces that their meshes stand for; outside steps meshes decide.
   const BothWays ways(bodies, pair, shapes, in_step ? exact : ExactSurfaces{});
   if (near == nullptr) {
-    ways.of_a.append(reach, motion, nullptr, reduced, scratch);
-    ways.of_b.append(reach, motion, nullptr, reduced, scratch);
+    ways.of_a.append(reach, motion, nullptr, scratch);
+    ways.of_b.append(reach, motion, nullptr, scratch);
   } else {
-    search_and_learn(bodies, pair, shapes, ways, reach, motion, reduced, scratch, *near);
+    search_and_learn(bodies, pair, shapes, ways, reach, motion, scratch, *near);
   }
   if (!reduced || scratch.candidates.empty()) return;
   reduce_candidates(pair, options, motion, scratch);
   if (exact.empty()) return;
-  refine_kept(ways, exact[bodies.shape[pair.body_a]].get(), exact[bodies.shape[pair.body_b]].get(),
-              motion.rest_reach(), in_step, scratch);
+  refine_kept(ways, exact[shape_a].get(), exact[shape_b].get(), motion.rest_reach(), in_step,
+              scratch);
+  if (in_step) drop_far_and_twins(scratch.candidates, reach.kept, motion.size(), scratch.reduction);
 }
 
 // The same of a shape and a plane or a container.

@@ -174,10 +174,10 @@ void make_candidates(const NearSurface& near, float margin, const Closing& closi
   table_of(kernel).make_candidates(near, margin, closing, hits, packets, out);
 }
 
-void look_up_distances(const voxel::DistanceField& field, const SamplePose& pose, float margin,
-                       std::span<const std::array<float, 3>> points, std::span<float> distances,
-                       Kernel kernel) {
-  table_of(kernel).look_up_distances(field, pose, margin, points, distances);
+void look_up_field(const voxel::DistanceField& field, const SamplePose& pose, float margin,
+                   std::span<const std::array<float, 3>> points, std::span<FieldAtPoint> values,
+                   Kernel kernel) {
+  table_of(kernel).look_up_field(field, pose, margin, points, values);
 }
 
 FarthestWrench keep_wrench(WrenchLanes& lanes, std::uint32_t chosen, std::uint32_t position,

@@ -44,11 +44,14 @@ struct SearchReach {
   /// Of eight samples of a packet that are farther than this by the field at its centre only one is
   /// looked up: the one that is nearest if the field rises straight [m].
   float far;
+  /// Samples of edges with at most this field value are hits, however few of their packets are: the
+  /// edges may cross others beside them [m].
+  float beside;
 
   // NOLINTNEXTLINE(google-explicit-constructor): most searches have a margin and nothing else.
   SearchReach(float margin_m, float sparse_m = std::numeric_limits<float>::infinity(),
-              float far_m = std::numeric_limits<float>::infinity())
-      : margin(margin_m), sparse(sparse_m), far(far_m) {}
+              float far_m = std::numeric_limits<float>::infinity(), float beside_m = 0.0F)
+      : margin(margin_m), sparse(sparse_m), far(far_m), beside(beside_m) {}
 };
 
 /// A packet of points far from the other surface, and the direction in which the field rises there,

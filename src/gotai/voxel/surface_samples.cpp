@@ -12,9 +12,11 @@ namespace gotai::voxel {
 namespace {
 
 constexpr double kMildAngle = 0.09;       // convex edges above it attract samples [rad]
-constexpr double kFaceRadius = 0.85;      // of the spacing, between face samples
+constexpr double kFaceRadius = 0.90;      // of the spacing, between face samples
 constexpr double kEdgeRadius = 0.7;       // of the spacing, between samples of sharp edges
 constexpr double kCornerRadius = 0.3;     // of the spacing, between sharp corners
+constexpr double kAloneLength = 0.75;     // of the spacing, of edges between corners
+constexpr double kStraight = 0.999;       // cosine: edges that go on in one line
 constexpr double kSameSide = 0.5;         // cosine: normals of one side of a thin part
 constexpr double kDensePerSpacing = 4.0;  // dense points per spacing and direction
 constexpr int kRelaxations = 2;
@@ -95,8 +97,9 @@ double dihedral(const SignedDistance& surface, std::uint32_t triangle, int edge)
 struct VertexFan {
   Vec3 normal_sum = Vec3::Zero();
   std::vector<Vec3> face_normals;
-  std::vector<Vec3> sharp_directions;  // along the sharp convex edges, away from the vertex
-  double largest_angle = 0.0;          // convex dihedral angle
+  std::vector<Vec3> sharp_directions;     // along the sharp convex edges, away from the vertex
+  std::vector<std::uint32_t> sharp_ends;  // the other ends of those edges
+  double largest_angle = 0.0;             // convex dihedral angle
 };
 
 class Sampler {
@@ -142,6 +145,8 @@ class Sampler {
           const Vec3 along = (surface_.vertex(j) - surface_.vertex(i)).normalized();
           fans_[i].sharp_directions.push_back(along);
           fans_[j].sharp_directions.push_back(-along);
+          fans_[i].sharp_ends.push_back(j);
+          fans_[j].sharp_ends.push_back(i);
         }
       }
     }
@@ -205,12 +210,34 @@ class Sampler {
     }
   }
 
+  // How far a sharp edge goes on straight beyond a vertex that it comes to [m], up to a length.
+  double straight_on(std::uint32_t vertex, const Vec3& direction, double most) const {
+    double length = 0.0;
+    while (length < most) {
+      const VertexFan& fan = fans_[vertex];
+      const auto on = std::find_if(fan.sharp_directions.begin(), fan.sharp_directions.end(),
+                                   [&](const Vec3& d) { return d.dot(direction) > kStraight; });
+      if (fan.sharp_directions.size() != 2 || on == fan.sharp_directions.end()) break;
+      const std::uint32_t next =
+          fan.sharp_ends[static_cast<std::size_t>(on - fan.sharp_directions.begin())];
+      length += (surface_.vertex(next) - surface_.vertex(vertex)).norm();
+      vertex = next;
+    }
+    return std::min(length, most);
+  }
+
   void place_along(std::uint32_t triangle, int edge, std::uint32_t other) {
     const auto e = static_cast<std::size_t>(edge);
-    const Vec3 a = surface_.vertex(surface_.corners(triangle)[e]);
-    const Vec3 b = surface_.vertex(surface_.corners(triangle)[(e + 1) % 3]);
+    const std::uint32_t from = surface_.corners(triangle)[e];
+    const std::uint32_t to = surface_.corners(triangle)[(e + 1) % 3];
+    const Vec3 a = surface_.vertex(from);
+    const Vec3 b = surface_.vertex(to);
     const double length = (b - a).norm();
-    const int intervals = std::max(1, static_cast<int>(std::ceil(length / spacing_)));
+    // Between two corners at least one sample has to know the edge.
+    const bool stands_alone =
+        is_corner(fans_[from]) && is_corner(fans_[to]) && length > kAloneLength * spacing_;
+    const int intervals =
+        std::max(stands_alone ? 2 : 1, static_cast<int>(std::ceil(length / spacing_)));
     SurfaceSample s;
     s.kind = SampleKind::edge;
     s.edge_direction = (b - a) / length;
@@ -220,11 +247,13 @@ class Sampler {
       if (sum.squaredNorm() > 1e-12) s.normal = sum.normalized();
     }
     s.cone_cosine = s.normal.dot(surface_.face_normal(triangle));
+    const double before = straight_on(from, -s.edge_direction, spacing_);
+    const double after = straight_on(to, s.edge_direction, spacing_);
     for (int k = 0; k <= intervals; ++k) {
       const double along = length * k / intervals;
       s.position = a + along * s.edge_direction;
-      s.reach_back = std::min(along, spacing_);
-      s.reach_forward = std::min(length - along, spacing_);
+      s.reach_back = std::min(along + before, spacing_);
+      s.reach_forward = std::min(length - along + after, spacing_);
       const bool at_end = k == 0 || k == intervals;
       add(s, (at_end ? kEdgeRadius : 0.5 * kEdgeRadius) * spacing_);
     }

@@ -36,7 +36,7 @@ struct SurfaceSample {
 };
 
 /// Convex edges whose faces' normals differ by more than this are sharp [rad].
-inline constexpr double kSharpAngle = 0.5236;  // 30 degrees
+inline constexpr double kSharpAngle = 0.3;  // 17 degrees
 
 /// Samples a closed surface with about one point per spacing^2. Every point of the surface has a
 /// sample of compatible normal within about one spacing, so both sides of a thin plate are kept.

@@ -1,0 +1,164 @@
+// Gaps and normals of contacts from the triangles that a field is of.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "gotai/collision/field_contacts.h"
+#include "gotai/collision/surface_sample.h"
+
+namespace gotai::collision {
+namespace {
+
+// Interpolated distances are off by less than half the diagonal of a cell [cells].
+constexpr double kFieldError = 0.9;
+constexpr double kLikelyError = 0.1;  // by less, mostly [cells]
+// Crossings of edges are off by less along the edge [cells].
+constexpr double kCrossingError = 0.5;
+// Slopes along an edge below which it is nearly parallel to a face.
+constexpr double kSteep = 0.02;
+constexpr double kLeastCosine = 0.3;
+
+}  // namespace
+
+struct FieldContacts::Slid {
+  double along = 0.0;  // [m]
+  double distance = std::numeric_limits<double>::infinity();
+  double slope = 0.0;          // of the distance along the edge
+  Vec3 up_Q = Vec3::Zero();    // unit, away from the nearest point, or out of the body
+  Vec3 face_Q = Vec3::Zero();  // outward normal where the nearest point is inside a face, else 0
+};
+
+void FieldContacts::refine(const ExactSurface& exact, ContactCandidate& c) const {
+  const auto sample = static_cast<std::uint32_t>(c.feature);
+  const FieldPoint own = deepest_vertex(sample, c.gap);
+  const double error = kFieldError * field_.field.cell;
+  const double limit = std::abs(own.distance) + error;
+  const std::int32_t edge = samples_.tree.edge[sample];
+  const Vec3 edge_P = edge < 0
+                          ? Vec3(Vec3::Zero())
+                          : to_double(samples_.tree.edge_direction[static_cast<std::size_t>(edge)]);
+  Slid best = slide(exact, own.x_P, edge_P, 0.0, limit, own.distance);
+  if (edge >= 0 && std::isfinite(best.distance)) {
+    const auto& reach = samples_.tree.edge_reach[static_cast<std::size_t>(edge)];
+    const double far =
+        best.slope < 0.0 ? static_cast<double>(reach[1]) : -static_cast<double>(reach[0]);
+    const Slid end =
+        slide(exact, own.x_P, edge_P, far, limit + std::abs(far), limit + std::abs(far));
+    if (far != 0.0 && std::isfinite(end.distance) && end.slope * best.slope < 0.0) {
+      const double along =
+          (end.distance - end.slope * far - best.distance) / (best.slope - end.slope);
+      const Slid crossing = slide(exact, own.x_P, edge_P, along, limit + std::abs(far),
+                                  best.distance + best.slope * along);
+      if (std::abs(along) <= std::abs(far) && along * far >= 0.0 &&
+          crossing.distance < best.distance) {
+        best = crossing;
+      }
+    }
+  }
+  // Fields are never off by more: a larger difference means that the sides were mistaken.
+  if (!(best.distance <= own.distance + error && best.distance >= own.distance - 3.0 * error)) {
+    return;
+  }
+  c.gap = best.distance;
+  if (!best.face_Q.isZero()) {
+    c.normal_A = samples_of_b_ ? Vec3(-best.face_Q) : Vec3(R_QP_.transpose() * best.face_Q);
+  }
+  put_at(own.x_P + best.along * edge_P, c);
+}
+
+void FieldContacts::refine_in_step(const ExactSurface& exact, ContactCandidate& c) const {
+  const Vec3 own_A = samples_of_b_ ? Vec3(c.point_A - c.gap * c.normal_A) : c.point_A;
+  const Vec3 own_Q = samples_of_b_ ? Vec3(own_A + p_MA_) : Vec3(X_QP_ * (own_A + p_MA_));
+  if (c.crosses) {
+    refine_crossing(exact, own_Q, c);
+    return;
+  }
+  const double error = kFieldError * field_.field.cell;
+  const double own = std::abs(c.gap);
+  const double likely = own + kLikelyError * field_.field.cell;
+  const double distance = exact.nearest(own_Q, own + error, likely).distance;
+  if (!(std::abs(distance - c.gap) <= error)) return;
+  c.gap = distance;
+  if (samples_of_b_) c.point_A = own_A + c.gap * c.normal_A;
+}
+
+// Where edges cross the field is rounded: the nearest point is somewhat farther along the edge,
+// with one of the two faces of Q on either side of it.
+void FieldContacts::refine_crossing(const ExactSurface& exact, const Vec3& own_Q,
+                                    ContactCandidate& c) const {
+  const double reach = kCrossingError * field_.field.cell;
+  const auto edge =
+      static_cast<std::size_t>(samples_.tree.edge[static_cast<std::uint32_t>(c.feature)]);
+  const Vec3 own_P = X_QP_.inverse() * own_Q;
+  const Vec3 edge_P = to_double(samples_.tree.edge_direction[edge]);
+  const auto slide_to = [&](double along, double distance) {
+    return slide(exact, own_P, edge_P, along, std::abs(distance) + kFieldError * field_.field.cell,
+                 distance);
+  };
+  const Slid own = slide_to(0.0, c.gap);
+  const Slid end = slide_to(own.slope < 0.0 ? reach : -reach, own.distance);
+  if (!std::isfinite(own.distance) || !std::isfinite(end.distance)) return;
+  const bool crosses = own.slope * end.slope < 0.0;
+  Slid best = end.distance < own.distance ? end : own;
+  Vec3 n_Q = samples_of_b_ ? Vec3(-c.normal_A) : Vec3(R_QP_ * c.normal_A);
+  if (crosses) {
+    // Nearly parallel to a face the nearest point jumps when bodies rock: only a part of the way.
+    const double share = std::min(1.0, std::min(std::abs(own.slope), std::abs(end.slope)) / kSteep);
+    const double along =
+        (own.distance - end.distance + end.slope * end.along) / (end.slope - own.slope);
+    best = slide_to(share * along, own.distance + own.slope * share * along);
+    n_Q = (std::abs(end.slope) * own.up_Q + std::abs(own.slope) * end.up_Q).normalized();
+  }
+  // Along the common normal edges are farther in each other than one is in a face of the other.
+  c.gap = best.distance < 0.0 ? best.distance / std::max(kLeastCosine, n_Q.dot(best.up_Q))
+                              : best.distance;
+  c.normal_A = samples_of_b_ ? Vec3(-n_Q) : Vec3(R_QP_.transpose() * n_Q);
+  put_at(own_P + best.along * edge_P, c);
+}
+
+// The contact's point on body a, for a point of P.
+void FieldContacts::put_at(const Vec3& x_P, ContactCandidate& c) const {
+  c.point_A = samples_of_b_ ? Vec3(X_QP_ * x_P - p_MA_ + c.gap * c.normal_A) : Vec3(x_P - p_MA_);
+}
+
+// A sample or, if deeper, one of the vertices that it stands for.
+FieldContacts::FieldPoint FieldContacts::deepest_vertex(std::uint32_t sample, double gap) const {
+  const voxel::SurfaceTree& tree = samples_.tree;
+  FieldPoint deepest{sample_point(samples_, sample), gap};
+  const std::uint32_t first = tree.first_vertex[sample];
+  const std::uint32_t last = tree.first_vertex[sample + 1];
+  std::array<FieldAtPoint, voxel::kLanes> values;
+  for (std::uint32_t begin = first; begin < last; begin += voxel::kLanes) {
+    const std::size_t count = std::min<std::size_t>(voxel::kLanes, last - begin);
+    look_up_field(field_.field, pose_, static_cast<float>(gap),
+                  std::span(tree.vertex).subspan(begin, count), std::span(values));
+    for (std::size_t i = 0; i < count; ++i) {
+      const double distance = static_cast<double>(values[i].distance);
+      if (distance < deepest.distance) {
+        deepest = {samples_.center + to_double(tree.vertex[begin + i]), distance};
+      }
+    }
+  }
+  return deepest;
+}
+
+FieldContacts::Slid FieldContacts::slide(const ExactSurface& exact, const Vec3& own_P,
+                                         const Vec3& edge_P, double along, double limit,
+                                         double expected) const {
+  const Vec3 x_Q = X_QP_ * (own_P + along * edge_P);
+  const double likely = std::abs(expected) + kLikelyError * field_.field.cell;
+  const voxel::ClosestPoint nearest = exact.nearest(x_Q, limit, likely);
+  if (!std::isfinite(nearest.distance)) return {};
+  const Vec3 away = x_Q - nearest.point;
+  const double length = away.norm();
+  const Vec3 up = length > 1e-9 * limit
+                      ? Vec3(away * (std::copysign(1.0, nearest.distance) / length))
+                      : nearest.pseudonormal;
+  const Vec3& face = exact.surface.face_normal(nearest.triangle);
+  const bool is_above_face = up.dot(face) > 1.0 - 1e-6;
+  return {along, nearest.distance, up.dot(R_QP_ * edge_P), up,
+          is_above_face ? face : Vec3(Vec3::Zero())};
+}
+
+}  // namespace gotai::collision
