@@ -171,7 +171,7 @@ TEST(SurfaceSamples, KeepCornersAndEdgesOfACubeWithTheirNormalCones) {
     }
   }
   EXPECT_EQ(corners, 8);
-  EXPECT_GE(edges, 12 * 7);
+  EXPECT_GE(edges, 12 * 6);
   EXPECT_LE(edges, 12 * 9);
 }
 

@@ -89,6 +89,7 @@ class FieldContacts {
   void append_hits(const FieldReach& reach, const PairMotion& motion,
                    SurfaceScratch& scratch) const;
   FieldPoint deepest_vertex(std::uint32_t sample, double gap) const;
+  bool rises_at(const Vec3& x_P, const Vec3& along_P) const;
   void refine_crossing(const ExactSurface& exact, const Vec3& own_Q, ContactCandidate& c) const;
   void put_at(const Vec3& x_P, ContactCandidate& c) const;
   // @param expected  probably no farther [m]

@@ -44,8 +44,10 @@ void FieldContacts::refine(const ExactSurface& exact, ContactCandidate& c) const
     const double far =
         best.slope < 0.0 ? static_cast<double>(reach[1]) : -static_cast<double>(reach[0]);
     const Slid end =
-        slide(exact, own.x_P, edge_P, far, limit + std::abs(far), limit + std::abs(far));
-    if (far != 0.0 && std::isfinite(end.distance) && end.slope * best.slope < 0.0) {
+        rises_at(own.x_P + far * edge_P, far * edge_P)
+            ? slide(exact, own.x_P, edge_P, far, limit + std::abs(far), limit + std::abs(far))
+            : Slid{};
+    if (std::isfinite(end.distance) && end.slope * best.slope < 0.0) {
       const double along =
           (end.distance - end.slope * far - best.distance) / (best.slope - end.slope);
       const Slid crossing = slide(exact, own.x_P, edge_P, along, limit + std::abs(far),
@@ -65,6 +67,15 @@ void FieldContacts::refine(const ExactSurface& exact, ContactCandidate& c) const
     c.normal_A = samples_of_b_ ? Vec3(-best.face_Q) : Vec3(R_QP_.transpose() * best.face_Q);
   }
   put_at(own.x_P + best.along * edge_P, c);
+}
+
+// Does Q's field rise along a direction there?
+bool FieldContacts::rises_at(const Vec3& x_P, const Vec3& along_P) const {
+  const Eigen::Vector3f x = (x_P - samples_.center).cast<float>();
+  const std::array<std::array<float, 3>, 1> point = {{{x.x(), x.y(), x.z()}}};
+  std::array<FieldAtPoint, 1> value;
+  look_up_field(field_.field, pose_, field_.field.trusted, point, value);
+  return to_double(value[0].slope).dot(along_P) > 0.0;
 }
 
 void FieldContacts::refine_in_step(const ExactSurface& exact, ContactCandidate& c) const {

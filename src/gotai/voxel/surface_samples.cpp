@@ -15,6 +15,7 @@ constexpr double kMildAngle = 0.09;       // convex edges above it attract sampl
 constexpr double kFaceRadius = 0.90;      // of the spacing, between face samples
 constexpr double kEdgeRadius = 0.7;       // of the spacing, between samples of sharp edges
 constexpr double kCornerRadius = 0.3;     // of the spacing, between sharp corners
+constexpr double kEdgeSpacing = 1.2;      // of the spacing, between samples of an edge, at most
 constexpr double kAloneLength = 0.75;     // of the spacing, of edges between corners
 constexpr double kStraight = 0.999;       // cosine: edges that go on in one line
 constexpr double kSameSide = 0.5;         // cosine: normals of one side of a thin part
@@ -236,8 +237,8 @@ class Sampler {
     // Between two corners at least one sample has to know the edge.
     const bool stands_alone =
         is_corner(fans_[from]) && is_corner(fans_[to]) && length > kAloneLength * spacing_;
-    const int intervals =
-        std::max(stands_alone ? 2 : 1, static_cast<int>(std::ceil(length / spacing_)));
+    const int intervals = std::max(stands_alone ? 2 : 1,
+                                   static_cast<int>(std::ceil(length / (kEdgeSpacing * spacing_))));
     SurfaceSample s;
     s.kind = SampleKind::edge;
     s.edge_direction = (b - a) / length;
