@@ -96,7 +96,7 @@ void judge_level_error(Outcome& outcome, const std::vector<Record>& records,
   outcome.verdicts.push_back(
       falls_with_level(fmt::format("surface model, {}: error against the surface at level {} [L]",
                                    what, kReferenceLevel),
-                       levels.y, kNoiseMargin * noise));
+                       levels.y, kNoiseMargin * noise, noise));
   Series floor{"noise floor", levels.x, std::vector<double>(levels.x.size(), noise), false, true};
   outcome.plots.push_back({"",
                            fmt::format("Surface model, {}: error by level", what),

@@ -125,7 +125,9 @@ void time_runs(const std::function<World()>& make_world, double duration, int re
 
 /// Errors by ascending level fall from each level to the next, or are below `floor`: what is left
 /// there is not the level's (round-off, the step's own error).
-Verdict falls_with_level(std::string what, const std::vector<double>& errors, double floor);
+/// @param noise  errors that differ by less are the same; the last must be below the first
+Verdict falls_with_level(std::string what, const std::vector<double>& errors, double floor,
+                         double noise = 0.0);
 
 /// "C", "surface" -> "C, surface": label of a line in plots.
 std::string label_of(const Json& record);

@@ -114,6 +114,9 @@ TEST(Verdicts, AreMissedByNumbersThatDoNotComeOut) {
   EXPECT_TRUE(falls_with_level("", {0.3, 0.2, 0.1}, 0.0).passed);
   EXPECT_TRUE(falls_with_level("", {0.3, 1e-4, 2e-4}, 1e-3).passed);
   EXPECT_FALSE(falls_with_level("", {0.3, 0.1, 0.2}, 1e-3).passed);
+  EXPECT_TRUE(falls_with_level("", {0.3, 0.1, 0.101}, 1e-3, 2e-3).passed);
+  EXPECT_FALSE(falls_with_level("", {0.3, 0.1, 0.103}, 1e-3, 2e-3).passed);
+  EXPECT_FALSE(falls_with_level("", {0.3, 0.3, 0.301}, 1e-3, 2e-3).passed);
   EXPECT_FALSE(falls_with_level("", {}, 1.0).passed);
 }
 

@@ -229,7 +229,8 @@ double SubsteppedConstraint::rolling_arm(const model::BodyState& bodies, model::
                             ? std::min(bodies.bounding_radius[a], bodies.bounding_radius[b])
                             : bodies.bounding_radius[a];
   const double speed = radius * (bodies.w_W[a] - bodies.w_W[b]).norm();
-  // What rolls in earnest is hardly braked: the resistance at rest falls by the square of the speed.
+  // What rolls in earnest is hardly braked: the resistance at rest falls by the square of the
+  // speed.
   const double slow = 0.5 * settings_.gravity.norm() * plan_.dt;
   const double share = speed > slow ? (slow / speed) * (slow / speed) : 1.0;
   return radius * std::max(settings_.impulse.rolling_resistance, share * model::kRestingResistance);
