@@ -55,7 +55,7 @@ TEST(CrossedEdges, ContactsAreWhereTheLinesAreNearest) {
   for (const int level : {5, 6}) {
     double worst = 0.0;
     double worst_angle = 0.0;
-    for (int trial = 0; trial < 60; ++trial) {
+    for (int trial = 0; trial < 24; ++trial) {
       const double twist = random.uniform(0.6, 2.5);
       const Eigen::Vector2d shift(random.uniform(-0.2, 0.2), random.uniform(-0.05, 0.05));
       const double gap = random.uniform(-2e-3, 1e-3);
