@@ -3,15 +3,17 @@
 // for, the same for other engines (--compare may be given twice).
 //
 //   bench_pile FOLDER MESH N [--seconds 5] [--level 6] [--contacts all|reduced] [--threads 1]
-//              [--copies 1x1] [--shift 0] [--rolling 1e-4] [--compare ode|bullet] [--verbose]
-//              [--unjudged]
+//              [--copies 1x1] [--shift 0] [--rolling 1e-4] [--repeat 1] [--compare ode|bullet]
+//              [--verbose] [--unjudged]
 //   bench_pile FOLDER MESH N --memory
 //
 // --copies 3x2 puts six copies of the pile side by side into one container; --shift 1e-7 starts all
 // bodies so many metres further along x, for another run of the same kind; --rolling sets the
-// rolling resistance; --unjudged leaves out how far the meshes overlap, which takes longer than the
-// run; --memory prints what shapes, bodies and contacts take instead of running for the time.
-// FOLDER holds MESH.obj and MESH_N.csv: poses px,py,pz,qw,qx,qy,qz after a line
+// rolling resistance; --repeat 5 runs the pile five times, the same to the last bit, and counts the
+// least time of each step, so that a busy machine does not tell; --unjudged leaves out how far the
+// meshes overlap, which takes longer than the run; --memory prints what shapes, bodies and contacts
+// take instead of running for the time. FOLDER holds MESH.obj and MESH_N.csv: poses
+// px,py,pz,qw,qx,qy,qz after a line
 // "# bodies container_inner_edge_m container_height_m: N EDGE HEIGHT".
 #include <fmt/format.h>
 
@@ -29,7 +31,7 @@ pile::Options parse(int argc, char** argv) {
   if (argc < 4) {
     throw InvalidArgument("arguments", fmt::format("{}", argc - 1),
                           "bench_pile FOLDER MESH N [--seconds S] [--level L] [--contacts C] "
-                          "[--threads T] [--copies XxY] [--shift M] [--rolling R] "
+                          "[--threads T] [--copies XxY] [--shift M] [--rolling R] [--repeat R] "
                           "[--compare ode|bullet] [--verbose] [--unjudged] [--memory]");
   }
   pile::Options o;
@@ -56,6 +58,8 @@ pile::Options parse(int argc, char** argv) {
       o.seconds = std::stod(value);
     } else if (key == "--level") {
       o.level = std::stoi(value);
+    } else if (key == "--repeat") {
+      o.repeat = std::stoi(value);
     } else if (key == "--threads") {
       o.threads = std::stoi(value);
     } else if (key == "--copies") {
@@ -95,10 +99,10 @@ void print_row(const pile::Options& o, const pile::Result& r) {
 void print_memory(const pile::Options& o) {
   const pile::Memory m = pile::measure_memory(o, pile::read_pile(o));
   fmt::print(
-      "{}, level {}: surface model {:.0f} KB (whole shape {:.0f} KB, prepared by a world {:.0f} "
-      "KB), body {:.0f} bytes, contact {:.0f} bytes\n",
-      o.mesh, o.level, m.surface_model / 1024.0, m.shape / 1024.0, m.prepared / 1024.0, m.per_body,
-      m.per_contact);
+      "{}, level {}: {:.0f} KB per shape: itself {:.0f} KB (of it the surface model {:.0f} KB), "
+      "prepared by a world {:.0f} KB; body {:.0f} bytes, contact {:.0f} bytes\n",
+      o.mesh, o.level, (m.shape + m.prepared) / 1024.0, m.shape / 1024.0, m.surface_model / 1024.0,
+      m.prepared / 1024.0, m.per_body, m.per_contact);
 }
 
 void run(const pile::Options& o) {

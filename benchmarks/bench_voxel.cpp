@@ -15,6 +15,7 @@
 #include "gotai/voxel/inside.h"
 #include "gotai/voxel/inside_soup.h"
 #include "gotai/voxel/orient_soup.h"
+#include "gotai/voxel/shape.h"
 
 namespace {
 
@@ -56,6 +57,19 @@ void prepare_soup(benchmark::State& state, const geometry::Mesh& mesh, int level
   state.counters["voxels"] = static_cast<double>(voxels);
 }
 
+/// The whole shape, with pyramid and surface model of that level. One thread.
+void prepare_shape(benchmark::State& state, const geometry::Mesh& mesh, int level) {
+  const ThreadLimit one_core(1);
+  std::size_t samples = 0;
+  for (auto _ : state) {
+    const voxel::Shape shape =
+        voxel::make_shape("shape", mesh, {.prepared_level = level, .surface_level = level});
+    samples = shape.surface.tree.size();
+  }
+  state.counters["triangles"] = static_cast<double>(mesh.triangles.size());
+  state.counters["samples"] = static_cast<double>(samples);
+}
+
 /// A twentieth of the triangles missing, a tenth turned round.
 geometry::Mesh damaged(geometry::Mesh mesh) {
   Random random(1);
@@ -83,6 +97,9 @@ void add_folder(const std::filesystem::path& folder) {
     benchmark::RegisterBenchmark(
         fmt::format("pyramid/{}/level6", file.filename().string()).c_str(),
         [mesh](benchmark::State& state) { prepare_pyramid(state, mesh, 6); })
+        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(fmt::format("shape/{}/level6", file.filename().string()).c_str(),
+                                 [mesh](benchmark::State& state) { prepare_shape(state, mesh, 6); })
         ->Unit(benchmark::kMillisecond);
   }
 }

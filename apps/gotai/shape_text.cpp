@@ -88,7 +88,7 @@ nlohmann::ordered_json to_json(const voxel::Shape& shape) {
   }
   if (!shape.surface.empty()) {
     json["surface"] = {{"level", shape.surface.level},
-                       {"samples", shape.surface.tree.normal.size()},
+                       {"samples", shape.surface.tree.size()},
                        {"spacing", shape.surface.spacing},
                        {"bytes", shape.surface.bytes()}};
   }
@@ -129,7 +129,7 @@ void describe(const voxel::Shape& shape, Report& report) {
   for (const std::string& warning : shape.warnings) report.row("warning", warning);
   if (!shape.surface.empty()) {
     report.row("surface", fmt::format("level {}: {} samples {} apart, {} KB", shape.surface.level,
-                                      format_count(shape.surface.tree.normal.size()),
+                                      format_count(shape.surface.tree.size()),
                                       format_length(shape.surface.spacing),
                                       format_count(shape.surface.bytes() / 1000)));
   }

@@ -42,11 +42,12 @@ double bytes_of_world(const Options& o, const Pile& pile, const ShapePointer& sh
 
 Memory measure_memory(const Options& o, const Pile& pile) {
   Memory memory;
+  make_pile_shape(o, pile);  // what the first shape leaves behind: threads and tables
   const double before = heap_bytes();
   const ShapePointer shape = make_pile_shape(o, pile);
   memory.shape = heap_bytes() - before;
   memory.surface_model = static_cast<double>(shape->surface.bytes());
-  bytes_of_world(o, pile, shape, 1);  // what the first world leaves behind: threads and tables
+  bytes_of_world(o, pile, shape, 1);  // likewise the first world
   const double one = bytes_of_world(o, pile, shape, 1);
   const double few = bytes_of_world(o, pile, shape, 1000);
   const double many = bytes_of_world(o, pile, shape, 3000);

@@ -93,7 +93,7 @@ Drawing draw_4_4() {
   SvgDrawing svg(Vec2(-1.6, -0.4), Vec2(1.9, 2.9), 420.0);
   svg.line(Vec2(-1.4, 0.0), Vec2(1.4, 0.0), kInk, 2.5);
   svg.rectangle(Vec2(-0.5, 1.5), Vec2(0.5, 2.5), kBody, kBodyFill, 1.5);
-  for (const Vec3& c : shape->pyramid.level(3).center)
+  for (const Vec3& c : shape->pyramid.voxel_centers(3))
     if (c.y() < 0.0 && c.y() > -0.4)
       svg.circle(Vec2(c.x(), c.z() + 2.0), shape->pyramid.grid.voxel_radius(3), kVoxel, "none");
   svg.circle(Vec2(0.0, 2.0), 0.03, kInk, kInk);

@@ -75,7 +75,7 @@ void draw_voxels(SvgDrawing& svg, const voxel::Pyramid& pyramid, int level, cons
   const Vec3 up = Vec3(-0.25, -0.45, 1.0).normalized();
   const Vec3 toward(-0.5, -0.9, 0.55);
   const auto flat = [&](const Vec3& x) -> Vec2 { return Vec2(right.dot(x), up.dot(x)) + shift; };
-  std::vector<Vec3> centers = pyramid.level(level).center;
+  std::vector<Vec3> centers = pyramid.voxel_centers(level);
   std::sort(centers.begin(), centers.end(),
             [&](const Vec3& a, const Vec3& b) { return toward.dot(a) < toward.dot(b); });
   const double h = 0.5 * pyramid.grid.voxel_edge(level);
@@ -183,8 +183,9 @@ collision::DescentTrace descent_of_balls(const voxel::Pyramid*& pyramid, Pose& X
 std::size_t count_all_pairs(const voxel::Pyramid& pyramid, const Pose& X_BA, int level) {
   std::size_t count = 0;
   const double reach = 2.0 * pyramid.grid.voxel_radius(level);
-  for (const Vec3& a : pyramid.level(level).center)
-    for (const Vec3& b : pyramid.level(level).center)
+  const std::vector<Vec3> centers = pyramid.voxel_centers(level);
+  for (const Vec3& a : centers)
+    for (const Vec3& b : centers)
       if ((X_BA * a - b).norm() <= reach) ++count;
   return count;
 }
@@ -221,8 +222,8 @@ Drawing draw_3_6() {
       hit_a[pair.a] = hit_b[pair.b] = true;
     nested = nested && !trace.colliding[static_cast<std::size_t>(h) - 1].empty();
     for (std::size_t i = 0; i < hit_a.size(); ++i) {
-      const Vec3 a = X_BA * pyramid->level(h).center[i];
-      const Vec3 b = pyramid->level(h).center[i];
+      const Vec3 a = X_BA * pyramid->voxel_center(h, i);
+      const Vec3 b = pyramid->voxel_center(h, i);
       svg.circle(b.head<2>() + shift, r, hit_b[i] ? kVoxel : "#e3e6ea",
                  hit_b[i] ? kVoxelFill : "none", 0.7);
       svg.circle(a.head<2>() + shift, r, hit_a[i] ? kBody : "#e3e6ea",

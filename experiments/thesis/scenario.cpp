@@ -144,7 +144,7 @@ double touching_height(const voxel::Shape& shape, const Quat& q_WB, const Setup&
   const Vec3& com = shape.mass.center_of_mass;
   if (setup.model == "spheres") {
     const double r = shape.pyramid.grid.voxel_radius(setup.level);
-    for (const Vec3& center : shape.pyramid.level(setup.level).center)
+    for (const Vec3& center : shape.pyramid.voxel_centers(setup.level))
       lowest = std::min(lowest, (q_WB * (center - com)).z() - r);
   } else {
     for (const geometry::Triangle& triangle : shape.mesh.triangles)

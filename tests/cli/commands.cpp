@@ -58,7 +58,7 @@ TEST(Check, DerivesTheTimeStep) {
 TEST(Check, ListsOverlapsAtTheStart) {
   const TemporaryFolder folder;
   const std::string scene = write_text(folder, "scene.toml", kTwoCubes);
-  const std::string shifted = "bodies.1.position=[0.2, 0.1, 1.0]";
+  const std::string shifted = "bodies.1.position=[0.2, 0.1, 1.1]";
   const Outcome refused = run_gotai({"check", scene, "--json", "--set", shifted});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("allow_initial_overlap"));

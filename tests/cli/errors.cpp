@@ -38,7 +38,7 @@ TEST(BadScene, EveryMistakeIsNamedWithItsPlaceAndWhatIsAllowed) {
        {"cub", "cube"}},
       {"position = [0, 0, 0.8]", "position = [0, 0]", {"scene.toml:14:", "3"}},
       {"position = [0, 0, 0.8]", "mass = -2", {"scene.toml:14:", "-2"}},
-      {"[0.2, 0.1, 2.3]", "[0.2, 0.1, 1.0]", {"overlap", "allow_initial_overlap"}},
+      {"[0.2, 0.1, 2.3]", "[0.2, 0.1, 1.1]", {"overlap", "allow_initial_overlap"}},
   };
   const TemporaryFolder folder;
   for (const Mistake& mistake : mistakes) {

@@ -78,10 +78,6 @@ voxel::Pyramid make_test_pyramid(const voxel::VoxelGrid& grid, int max_level,
     }
     parents.first_child.push_back(static_cast<std::uint32_t>(children.size()));
   }
-  for (int h = 1; h <= max_level; ++h) {
-    voxel::PyramidLevel& level = pyramid.levels[static_cast<std::size_t>(h) - 1];
-    for (const auto& i : level.index) level.center.push_back(grid.voxel_center(h, i));
-  }
   return pyramid;
 }
 
@@ -95,7 +91,7 @@ std::shared_ptr<const voxel::Shape> make_test_shape(std::string name, const voxe
   shape->pyramid = make_test_pyramid(grid, max_level, inside);
   for (int h = 1; h <= max_level; ++h) {
     double rho = 0.0;
-    for (const Vec3& c : shape->pyramid.level(h).center) rho = std::max(rho, (c - com_M).norm());
+    for (const Vec3& c : shape->pyramid.voxel_centers(h)) rho = std::max(rho, (c - com_M).norm());
     shape->voxel_bounding_radius.push_back(rho + grid.voxel_radius(h));
   }
   shape->bounding_radius = shape->voxel_bounding_radius.back();

@@ -25,12 +25,13 @@ struct NearCase {
   voxel::Shape p;
   voxel::Shape q;
   ExactSurface exact;
+  voxel::SignedDistance surface;
   Random random{51};
   Pose X_QP;  // of the frames S
   SurfaceSearch search;
 
   explicit NearCase(const geometry::GeneratorOptions& options)
-      : p(make_solid(options)), q(make_solid({.shape = "hexapod"})), exact(p) {}
+      : p(make_solid(options)), q(make_solid({.shape = "hexapod"})), exact(p), surface(p.mesh) {}
 
   void move(double farthest, float margin) {
     X_QP = {random.uniform(0.0, farthest) * random.unit_vector(), random.rotation()};
@@ -72,13 +73,14 @@ constexpr Closing kAll{{0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F}, 1e9F, 0.0F};
 Vec3 slope_for(const NearCase& c, const SurfaceHit& hit) {
   const double cell = static_cast<double>(c.q.surface.field.cell);
   const voxel::SurfaceTree& tree = c.p.surface.tree;
-  if (!(tree.cone_cosine[hit.sample] < 0.9F) ||
+  if (!(tree.elements[hit.sample].cone_cosine < 0.9F) ||
       std::abs(static_cast<double>(hit.distance)) >= 0.02 * cell) {
     return to_double(hit.gradient);
   }
   const Vec3 x = sample_point(c.p.surface, hit.sample) - c.p.surface.center;
-  return voxel::evaluate(c.q.surface.field,
-                         c.X_QP * (x - 0.1 * cell * to_double(tree.normal[hit.sample])))
+  return voxel::evaluate(
+             c.q.surface.field,
+             c.X_QP * (x - 0.1 * cell * to_double(unit_normal(tree.elements[hit.sample]))))
       .gradient;
 }
 
@@ -149,7 +151,7 @@ TEST(Candidates, OfCurvedSurfacesSlideToWhereTheyFaceTheOtherBody) {
       ASSERT_NEAR(voxel::evaluate(c.q.surface.field, c.X_QP * x).distance, candidate.gap, 1e-5);
       // And that is a point of the smooth surface: the mesh is up to 2e-3 of the tube inside it.
       const Vec3 on_mesh = x + c.p.surface.center;
-      ASSERT_NEAR(c.exact.surface.query(on_mesh).distance, 0.0, 3e-3);
+      ASSERT_NEAR(c.surface.query(on_mesh).distance, 0.0, 3e-3);
     }
   }
   EXPECT_GT(moved, 1000U);
@@ -213,7 +215,7 @@ TEST(Candidates, HaveTheSameBitsOnEveryKernel) {
           ASSERT_EQ(portable[i].normal_A, other[i].normal_A);
           ASSERT_EQ(portable[i].near_edge, other[i].near_edge);
         }
-        const auto& points = c.p.surface.tree.vertex;
+        const auto& points = c.p.surface.tree.vertices;
         if (points.empty()) continue;
         const std::size_t count = std::min<std::size_t>(points.size(), 37);
         std::vector<FieldAtPoint> one(count);

@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <vector>
 
 #include "gotai/collision/exact_surface.h"
 #include "gotai/core/random.h"
 #include "gotai/geometry/generate.h"
+#include "gotai/geometry/load_mesh.h"
 
 namespace gotai::collision {
 namespace {
@@ -23,19 +26,25 @@ class Exact : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(Exact, NearestPointIsThatOfTheSearchInDoublePrecision) {
-  const ExactSurface exact(make());
+  const voxel::Shape shape = make();
+  const ExactSurface exact(shape);
+  const voxel::SignedDistance surface(shape.mesh);
   Random random(31);
   std::size_t beyond = 0;
   for (int k = 0; k < 2000; ++k) {
     const Vec3 x = random.uniform(0.0, 0.9) * random.unit_vector();
     const double limit = random.uniform(0.02, 0.5);
-    const voxel::ClosestPoint slow = exact.surface.query(x);
+    const voxel::ClosestPoint slow = surface.query(x);
     const voxel::ClosestPoint fast = exact.nearest(x, limit);
     if (std::abs(slow.distance) > limit + 1e-5) {
       EXPECT_TRUE(std::isinf(fast.distance));
       ++beyond;
     } else if (std::abs(slow.distance) < limit - 1e-5) {
       ASSERT_NEAR(fast.distance, slow.distance, 1e-6);
+      if (fast.triangle != slow.triangle) continue;
+      ASSERT_EQ(fast.point, slow.point);
+      ASSERT_EQ(fast.pseudonormal, slow.pseudonormal);
+      ASSERT_EQ(exact.surface.face_normal(fast.triangle), surface.face_normal(slow.triangle));
     }
   }
   EXPECT_GT(beyond, 100U);
@@ -45,7 +54,8 @@ TEST_P(Exact, NearestPointIsThatOfTheSearchInDoublePrecision) {
 TEST_P(Exact, NearestTriangleIsTheSameOnEveryKernel) {
   for (const Kernel kernel : {Kernel::avx2, Kernel::avx512}) {
     if (!is_available(kernel)) continue;
-    const ExactSurface exact(make());
+    const voxel::Shape shape = make();
+    const ExactSurface exact(shape);
     Random random(32);
     for (int k = 0; k < 2000; ++k) {
       const Eigen::Vector3f x = (random.uniform(0.0, 0.9) * random.unit_vector()).cast<float>();
@@ -56,6 +66,25 @@ TEST_P(Exact, NearestTriangleIsTheSameOnEveryKernel) {
     }
   }
 }
+
+// All that one shape of many bodies takes of memory.
+TEST(Memory, OfAHexapodAndOfWhatAWorldPreparesOfItIsAtMost400KB) {
+  std::vector<geometry::Mesh> meshes = {geometry::generate({.shape = "hexapod"})};
+  const std::filesystem::path file = std::filesystem::path(GOTAI_SHARED_DIR) / "bench/hexapod.obj";
+  if (std::filesystem::exists(file)) meshes.push_back(geometry::load_mesh(file).mesh);
+  for (geometry::Mesh& mesh : meshes) {
+    const voxel::Shape shape =
+        voxel::make_shape("hexapod", std::move(mesh), {.prepared_level = 6, .surface_level = 6});
+    const ExactSurface exact(shape);
+    EXPECT_LE(shape.bytes() + exact.bytes(), 400U * 1024U)
+        << shape.bytes() << " + " << exact.bytes() << ", " << shape.mesh.triangles.size()
+        << " triangles";
+    // Nothing is forgotten: more than what the largest parts take.
+    EXPECT_GT(shape.bytes(), shape.surface.field.values.size() + sizeof(voxel::Shape) +
+                                 shape.mesh.triangles.size() * sizeof(geometry::Triangle));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Shapes, Exact, testing::Values("hexapod", "rock", "torus", "cube"));
 
 }  // namespace

@@ -163,7 +163,7 @@ TEST(FindContacts, AgreesWithBruteForceOverAllLeafSpheres) {
         std::vector<model::FeatureKey> keys;
         std::vector<double> gaps;
         for (std::uint32_t i = 0; i < p_a.level(4).size(); ++i) {
-          const Vec3 c_A = bodies.mesh_pose(a) * p_a.level(4).center[i];
+          const Vec3 c_A = bodies.mesh_pose(a) * p_a.voxel_center(4, i);
           const double r_A = p_a.grid.voxel_radius(4);
           if (bodies.geometry[b] == Geometry::plane) {
             if (c_A.z() + 1.0 - r_A > margin) continue;
@@ -173,7 +173,7 @@ TEST(FindContacts, AgreesWithBruteForceOverAllLeafSpheres) {
           }
           const voxel::Pyramid& p_b = scene.shapes[bodies.shape[b]]->pyramid;
           for (std::uint32_t j = 0; j < p_b.level(4).size(); ++j) {
-            const Vec3 c_B = bodies.mesh_pose(b) * p_b.level(4).center[j];
+            const Vec3 c_B = bodies.mesh_pose(b) * p_b.voxel_center(4, j);
             const double gap = (c_A - c_B).norm() - r_A - p_b.grid.voxel_radius(4);
             if (gap > margin) continue;
             keys.push_back(static_cast<model::FeatureKey>(i) << 32U | j);

@@ -27,9 +27,9 @@ std::vector<VoxelPair> brute_force(const voxel::Pyramid& a, const voxel::Pyramid
   const Mat3 R_BA = X_BA.q.toRotationMatrix();
   const double touching = a.grid.voxel_radius(level) + b.grid.voxel_radius(level);
   for (std::uint32_t i = 0; i < a.level(level).size(); ++i) {
-    const Vec3 c_A = R_BA * a.level(level).center[i] + X_BA.p;
+    const Vec3 c_A = R_BA * a.voxel_center(level, i) + X_BA.p;
     for (std::uint32_t j = 0; j < b.level(level).size(); ++j) {
-      if ((c_A - b.level(level).center[j]).norm() - touching <= margin) pairs.push_back({i, j});
+      if ((c_A - b.voxel_center(level, j)).norm() - touching <= margin) pairs.push_back({i, j});
     }
   }
   return pairs;

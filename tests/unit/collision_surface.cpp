@@ -395,14 +395,14 @@ TEST(NormalCone, KeepsWhatFitsAndTurnsTheRestToItsRim) {
   const voxel::SurfaceTree& tree = cube->surface.tree;
   Random random(18);
   for (std::uint32_t i = 0; i < tree.size(); ++i) {
-    const Vec3 axis(tree.normal[i][0], tree.normal[i][1], tree.normal[i][2]);
+    const Vec3 axis = to_double(unit_normal(tree.elements[i]));
     EXPECT_NEAR((fit_to_normal_cone(tree, i, axis) - axis).norm(), 0.0, 1e-5);
     EXPECT_TRUE(fit_to_normal_cone(tree, i, -axis).isZero());
     for (int k = 0; k < 10; ++k) {
       const Vec3 fitted = fit_to_normal_cone(tree, i, random.unit_vector());
       if (fitted.isZero()) continue;
       EXPECT_NEAR(fitted.norm(), 1.0, 1e-5);
-      EXPECT_GE(fitted.dot(axis), static_cast<double>(tree.cone_cosine[i]) - 1e-5);
+      EXPECT_GE(fitted.dot(axis), static_cast<double>(tree.elements[i].cone_cosine) - 1e-5);
     }
   }
 }

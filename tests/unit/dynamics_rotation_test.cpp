@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "gotai/core/random.h"
 #include "gotai/dynamics/integrate.h"
 #include "gotai/dynamics/rotation.h"
 #include "support/golden.h"
@@ -131,6 +132,49 @@ TEST(TorqueFree, ExplicitEulerKeepsTheAngularVelocity) {
   model::BodyState bodies = one_body(I, Quat::Identity(), Vec3(1.0, 0.5, 1.0));
   for (int k = 0; k < 100; ++k) dynamics::advance_poses_explicit(bodies, 0.01);
   EXPECT_LT((bodies.w_W[0] - Vec3(1.0, 0.5, 1.0)).norm(), 1e-12);
+}
+
+// Bodies are rotated several at a time, some of them slow, some fast, between others that do not
+// move freely: each to the bits that it has alone, with the inertia that a resumed run computes.
+TEST(TorqueFree, BodiesRotateAsIfAlone) {
+  constexpr model::BodyIndex kBodies = 21;
+  Random random(7);
+  model::BodyState bodies;
+  for (model::BodyIndex i = 0; i < kBodies; ++i) {
+    model::append_body(bodies);
+    bodies.v_W[i] = random.unit_vector();
+    bodies.q_WB[i] = random.rotation();
+    if (i % 7 == 3) {
+      bodies.w_W[i] = random.unit_vector();
+      if (i > 5) bodies.kind[i] = model::BodyKind::kinematic;
+      continue;
+    }
+    bodies.kind[i] = model::BodyKind::dynamic;
+    const Mat3 axes = random.rotation().toRotationMatrix();
+    const Vec3 moments(random.uniform(1.0, 2.0), random.uniform(1.0, 2.0),
+                       random.uniform(1.0, 2.0));
+    model::set_mass(bodies, i, 1.0, axes * moments.asDiagonal() * axes.transpose());
+    bodies.L_W[i] = (i % 5 == 0 ? 1000.0 : 1.0) * random.unit_vector();
+    model::refresh_derived(bodies, i);
+  }
+  const auto copy_of = [](const model::BodyState& from, model::BodyIndex i) {
+    model::BodyState one = from;
+    for (model::BodyIndex k = kBodies; k-- > 0;)
+      if (k != i) model::erase_body(one, k);
+    return one;
+  };
+  model::BodyState together = bodies;
+  for (int step = 0; step < 3; ++step) dynamics::advance_poses(together, {}, 0.01);
+  for (model::BodyIndex i = 0; i < kBodies; ++i) {
+    model::BodyState alone = copy_of(bodies, i);
+    for (int step = 0; step < 3; ++step) dynamics::advance_poses(alone, {}, 0.01);
+    EXPECT_EQ(together.x_W[i], alone.x_W[0]) << i;
+    EXPECT_EQ(together.q_WB[i].coeffs(), alone.q_WB[0].coeffs()) << i;
+    EXPECT_EQ(together.w_W[i], alone.w_W[0]) << i;
+    model::refresh_derived(alone, 0);
+    EXPECT_EQ(together.inverse_I_W[i], alone.inverse_I_W[0]) << i;
+    EXPECT_LT((together.w_W[i] - alone.w_W[0]).norm(), 1e-14 * (1.0 + alone.w_W[0].norm())) << i;
+  }
 }
 
 }  // namespace

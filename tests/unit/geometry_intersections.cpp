@@ -31,6 +31,26 @@ TEST(Orientation, IsExactOnNearlyDegenerateInput) {
   EXPECT_EQ(orientation(Vec2(0.5, std::nextafter(0.5, 1.0)), q, r), 1);
 }
 
+TEST(Orientation, OfCornersInCommonAndPlanesOfTheAxes) {
+  Random random(2);
+  for (int trial = 0; trial < 300; ++trial) {
+    std::array<Vec3, 4> p = {random.unit_vector(), random.unit_vector(), random.unit_vector(),
+                             random.unit_vector()};
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(orientation(p[0], p[1], p[2], p[k]), 0);
+    const int axis = trial % 3;
+    for (Vec3& x : p) x[axis] = 0.1;
+    EXPECT_EQ(orientation(p[0], p[1], p[2], p[3]), 0);
+    // By a rounding off the plane it is not on it.
+    const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
+    p[3][axis] = std::nextafter(0.1, 1.0);
+    EXPECT_EQ(orientation(p[0], p[1], p[2], p[3]), normal[axis] > 0.0 ? 1 : -1);
+    const Vec2 q(p[0].x(), p[0].y());
+    const Vec2 r(p[1].x(), p[1].y());
+    EXPECT_EQ(orientation(q, r, r), 0);
+    EXPECT_EQ(orientation(q, r, q), 0);
+  }
+}
+
 TEST(Orientation, OfGeneralInput) {
   Random random(1);
   for (int trial = 0; trial < 1000; ++trial) {

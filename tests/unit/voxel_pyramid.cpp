@@ -134,7 +134,7 @@ TEST(Pyramid, ParentsExistWhereAnyChildDoesAndChildrenAreContiguous) {
     }
     EXPECT_EQ(std::set<VoxelIndex>(parents.index.begin(), parents.index.end()).size(),
               parents.size());
-    EXPECT_EQ(parents.center.at(0), grid.voxel_center(h, parents.index.at(0)));
+    EXPECT_EQ(pyramid.voxel_center(h, 0), grid.voxel_center(h, parents.index.at(0)));
   }
   EXPECT_TRUE(pyramid.level(6).first_child.empty());
 }

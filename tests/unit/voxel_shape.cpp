@@ -164,7 +164,7 @@ TEST(Shape, HoldsWhatABodyNeeds) {
   EXPECT_NEAR(shape.voxel_bounding_radius.at(4),
               Vec3(1.0 - 0.0625, 0.5 - 0.0625, 0.5 - 0.0625).norm() + std::sqrt(3.0) / 16.0, 1e-15);
   for (int h = 1; h <= 5; ++h)
-    for (const Vec3& c : shape.pyramid.level(h).center)
+    for (const Vec3& c : shape.pyramid.voxel_centers(h))
       EXPECT_LE((c - shape.mass.center_of_mass).norm() + shape.pyramid.grid.voxel_radius(h),
                 shape.voxel_bounding_radius.at(static_cast<std::size_t>(h) - 1));
 }

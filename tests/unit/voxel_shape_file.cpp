@@ -42,7 +42,6 @@ void expect_equal(const Shape& a, const Shape& b) {
   for (int h = 1; h <= a.pyramid.max_level(); ++h) {
     EXPECT_EQ(a.pyramid.level(h).index, b.pyramid.level(h).index);
     EXPECT_EQ(a.pyramid.level(h).first_child, b.pyramid.level(h).first_child);
-    EXPECT_EQ(a.pyramid.level(h).center, b.pyramid.level(h).center);
   }
   EXPECT_EQ(a.bounding_radius, b.bounding_radius);
   EXPECT_EQ(a.voxel_bounding_radius, b.voxel_bounding_radius);
@@ -133,10 +132,16 @@ TEST_F(ShapeFile, SaysWhichVersionItIs) {
 TEST_F(ShapeFile, PayloadsThatPassTheChecksumAreStillChecked) {
   const std::vector<std::byte> good = encode_shape(shape_);
   expect_equal(decode_shape(good, "good"), shape_);
-  // Announced sizes far beyond the file must be refused before they are allocated.
-  for (std::size_t at = 0; at + 8 <= good.size(); at += 4) {
+  // Announced sizes far beyond the file must be refused before they are allocated: each number that
+  // may be one is tried.
+  const std::uint64_t huge = 0x7fffffffffffffff;
+  std::size_t tried = 0;
+  for (std::size_t at = 0; at + sizeof huge <= good.size(); at += 4) {
+    std::uint64_t size = 0;
+    std::memcpy(&size, good.data() + at, sizeof size);
+    if (size == 0 || size > good.size()) continue;
+    ++tried;
     std::vector<std::byte> bad = good;
-    const std::uint64_t huge = 0x7fffffffffffffff;
     std::memcpy(bad.data() + at, &huge, sizeof huge);
     try {
       const Shape shape = decode_shape(bad, "bad");
@@ -146,7 +151,8 @@ TEST_F(ShapeFile, PayloadsThatPassTheChecksumAreStillChecked) {
       EXPECT_THAT(refused.what(), HasSubstr("bad: is ")) << at;
     }
   }
-  for (std::size_t size = 0; size < good.size(); size += 7)
+  EXPECT_GT(tried, 10U);
+  for (std::size_t size = 0; size < good.size(); size += size < 1000 ? 7 : good.size() / 997)
     EXPECT_THROW(decode_shape(std::span(good).first(size), "short"), FileError);
   std::vector<std::byte> longer = good;
   longer.push_back(std::byte{0});

@@ -211,6 +211,53 @@ TEST(SurfaceTree, BoundsEverySampleAtEveryHeight) {
   }
 }
 
+TEST(SurfaceTree, KeepsWhatSamplesAreBesidesPoints) {
+  for (const char* name : {"hexapod", "rock", "sphere"}) {
+    const Mesh mesh = make(name);
+    const std::vector<SurfaceSample> samples =
+        sample_surface(SignedDistance(mesh), name == std::string("sphere") ? 0.25 : 0.04);
+    const SurfaceTree tree = make_surface_tree(samples, Vec3(0.1, 0.2, 0.3));
+    ASSERT_EQ(tree.size(), samples.size());
+    std::size_t vertices = 0;
+    for (std::uint32_t i = 0; i < tree.size(); ++i) {
+      const Vec3 x = point_of(tree, i) + Vec3(0.1, 0.2, 0.3);
+      const SurfaceSample& s = *std::min_element(
+          samples.begin(), samples.end(), [&](const SurfaceSample& a, const SurfaceSample& b) {
+            return (a.position - x).squaredNorm() < (b.position - x).squaredNorm();
+          });
+      ASSERT_LT((s.position - x).norm(), 1e-6);
+      const auto to_double = [](const std::array<float, 3>& v) { return Vec3(v[0], v[1], v[2]); };
+      const Vec3 normal = to_double(unit_normal(tree.elements[i]));
+      EXPECT_LT((normal - s.normal).norm(), 3e-5);
+      EXPECT_NEAR(normal.norm(), 1.0, 2e-7);
+      EXPECT_LT((to_double(tree.vector_area(i)) - s.vector_area).cwiseAbs().maxCoeff(),
+                0.51 * static_cast<double>(tree.area_unit));
+      EXPECT_EQ(tree.elements[i].cone_cosine, static_cast<float>(s.cone_cosine));
+      const SampleEdge* edge = tree.edge_of(i);
+      ASSERT_EQ(edge != nullptr, s.kind == SampleKind::edge);
+      if (edge != nullptr) {
+        EXPECT_LT((to_double(edge->direction) - s.edge_direction).norm(), 1e-6);
+        EXPECT_EQ(edge->back, static_cast<float>(s.reach_back));
+        EXPECT_EQ(edge->forward, static_cast<float>(s.reach_forward));
+      }
+      ASSERT_EQ(tree.vertices_of(i).size(), s.vertices.size());
+      EXPECT_EQ(tree.has_vertices(i), !s.vertices.empty());
+      for (std::size_t v = 0; v < s.vertices.size(); ++v) {
+        EXPECT_LT((to_double(tree.vertices_of(i)[v]) + Vec3(0.1, 0.2, 0.3) - s.vertices[v]).norm(),
+                  1e-6);
+      }
+      vertices += s.vertices.size();
+    }
+    EXPECT_EQ(tree.vertices.size(), vertices);
+    if (name == std::string("sphere")) {
+      EXPECT_GT(vertices, 20U);
+    }
+    if (name == std::string("hexapod")) {
+      EXPECT_GT(tree.edges.size(), 100U);
+    }
+  }
+}
+
 // Leaf spheres of eight samples stay near the size of the patch that eight samples cover.
 TEST(SurfaceTree, KeepsLeavesCompact) {
   const SurfaceModel model = make_surface_model(make("sphere"), 5);
@@ -306,8 +353,12 @@ TEST(SurfaceModel, StaysSmallAndIsTheSameEveryTime) {
   const SurfaceModel again = make_surface_model(mesh, 6);
   EXPECT_EQ(model.field.values, again.field.values);
   EXPECT_EQ(model.field.coarse, again.field.coarse);
-  EXPECT_EQ(model.tree.vector_area, again.tree.vector_area);
-  EXPECT_EQ(model.tree.normal, again.tree.normal);
+  ASSERT_EQ(model.tree.size(), again.tree.size());
+  for (std::uint32_t i = 0; i < model.tree.size(); ++i) {
+    EXPECT_EQ(model.tree.vector_area(i), again.tree.vector_area(i));
+    EXPECT_EQ(model.tree.elements[i].normal, again.tree.elements[i].normal);
+    EXPECT_EQ(model.tree.elements[i].cone_cosine, again.tree.elements[i].cone_cosine);
+  }
 }
 
 // The level follows from the thinnest walls and from the accuracy that is wished for.

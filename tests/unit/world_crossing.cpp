@@ -89,6 +89,42 @@ TEST(CrossedEdges, BarsOverlapByLessThanATwentiethOfACell) {
   }
 }
 
+// Near an edge the field is rounded: a corner that is in the body lies above it by the field.
+TEST(CornersBesideEdges, AreContacts) {
+  Random random(5);
+  const ShapePointer shape = bar(5);
+  const ShapePointer small =
+      test::surface_shape({.shape = "box", .extents = Vec3::Constant(0.2)}, 5);
+  const auto cell = static_cast<double>(shape->surface.field.cell);
+  for (int trial = 0; trial < 40; ++trial) {
+    const double depth = random.uniform(0.0, 0.02) * cell;
+    const Vec3 normal = Vec3::UnitZ();
+    // On the upper face of the bar, whose edge is along x.
+    const Vec3 tip(random.uniform(-0.3, 0.3), 0.5 * kThickness - random.uniform(0.05, 0.4) * cell,
+                   0.5 * kThickness - depth);
+    const Quat corner_down = Quat::FromTwoVectors(Vec3(-1.0, -1.0, -1.0), -normal);
+    const Quat turned = Quat(Eigen::AngleAxisd(random.uniform(0.0, 6.0), normal)) * corner_down;
+    World world =
+        test::surface_world(5, test::surface_material(0.0, 0.5), 1.0 / 60.0, Vec3::Zero());
+    BodyDescription body;
+    body.density = 1000.0;
+    body.shape = world.add_shape(shape);
+    body.kind = model::BodyKind::fixed;
+    const Quat all = random.rotation();
+    body.X_WM.q = all;
+    world.add_body(body);
+    body.shape = world.add_shape(small);
+    body.kind = model::BodyKind::dynamic;
+    body.X_WM.q = all * turned;
+    body.X_WM.p = all * Vec3(tip - turned * Vec3::Constant(-0.1));
+    world.add_body(body);
+    world.step();
+    const auto& gap = world.contacts().gap;
+    ASSERT_FALSE(gap.empty()) << tip.transpose();
+    EXPECT_NEAR(*std::ranges::min_element(gap), -depth, 1e-3 * cell) << tip.transpose();
+  }
+}
+
 TEST(Twins, AndWhatIsFarAreDropped) {
   std::vector<collision::ContactCandidate> candidates(5);
   for (collision::ContactCandidate& c : candidates) {

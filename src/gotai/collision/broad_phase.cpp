@@ -285,10 +285,11 @@ void BroadPhase::sort_pairs(std::size_t body_count, std::vector<BodyPair>& out) 
   for (const std::vector<BodyPair>& found : found_) {
     for (const BodyPair& p : found) out[--first_[p.body_a]] = p;
   }
-  for (std::size_t a = 0; a < body_count; ++a) {
+  constexpr std::size_t kBodiesPerTask = 128;
+  parallel_for(body_count, kBodiesPerTask, [&](std::size_t a) {
     std::sort(out.begin() + first_[a], out.begin() + first_[a + 1],
               [](const BodyPair& p, const BodyPair& q) { return p.body_b < q.body_b; });
-  }
+  });
 }
 
 }  // namespace gotai::collision

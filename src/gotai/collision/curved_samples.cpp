@@ -153,7 +153,7 @@ CurvedSamples::CurvedSamples(const voxel::SurfaceModel& model, const SignedDista
   index_.assign(model.tree.size(), -1);
   std::uint32_t triangle = SignedDistance::kNoTriangle;
   for (std::uint32_t s = 0; s < model.tree.size(); ++s) {
-    if (model.tree.kind[s] != voxel::SampleKind::face) continue;
+    if (model.tree.edge_of(s) != nullptr) continue;
     const Vec3 x = sample_point(model, s);
     triangle = surface.query(x, std::numeric_limits<double>::infinity(), triangle).triangle;
     const geometry::Triangle& corner = surface.corners(triangle);
@@ -164,6 +164,8 @@ CurvedSamples::CurvedSamples(const voxel::SurfaceModel& model, const SignedDista
     index_[s] = static_cast<std::int32_t>(samples_.size());
     samples_.push_back(c);
   }
+  if (samples_.empty()) index_ = std::vector<std::int32_t>();
+  samples_.shrink_to_fit();
 }
 
 }  // namespace gotai::collision

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "gotai/core/bytes_of.h"
 #include "gotai/core/types.h"
 #include "gotai/voxel/shape.h"
 #include "gotai/voxel/signed_distance.h"
@@ -47,6 +48,7 @@ class CurvedSamples {
   }
   /// Farthest slide for which a sample speaks: beyond it others do [m].
   double reach() const { return reach_; }
+  std::size_t bytes() const { return bytes_of(index_) + bytes_of(samples_); }  ///< on the heap
 
  private:
   std::vector<std::int32_t> index_;  // per sample; -1: not smooth

@@ -4,11 +4,6 @@
 
 namespace gotai::collision {
 
-ExactSurface::ExactSurface(const voxel::Shape& shape)
-    : surface(shape.mesh),
-      tree(voxel::make_triangle_tree(surface, shape.surface.center)),
-      curved(shape.surface, surface) {}
-
 voxel::ClosestPoint ExactSurface::nearest(const Vec3& x, double limit, double likely) const {
   const Eigen::Vector3f p = (x - tree.center).cast<float>();
   const std::array<float, 3> point = {p.x(), p.y(), p.z()};
@@ -19,7 +14,7 @@ voxel::ClosestPoint ExactSurface::nearest(const Vec3& x, double limit, double li
     triangle = nearest_triangle(tree, point, static_cast<float>(limit));
   }
   if (triangle == voxel::SignedDistance::kNoTriangle) return {};
-  return surface.query_triangle(x, triangle);
+  return surface.nearest(x, triangle);
 }
 
 }  // namespace gotai::collision

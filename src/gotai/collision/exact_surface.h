@@ -10,7 +10,7 @@
 #include "gotai/collision/surface_search.h"
 #include "gotai/core/types.h"
 #include "gotai/voxel/shape.h"
-#include "gotai/voxel/signed_distance.h"
+#include "gotai/voxel/signed_triangles.h"
 #include "gotai/voxel/triangle_tree.h"
 
 namespace gotai::collision {
@@ -24,8 +24,10 @@ std::uint32_t nearest_triangle(const voxel::TriangleTree& tree, const std::array
 
 /// Signed distances to the surface of a shape, which must be closed and must not overlap itself.
 struct ExactSurface {
-  /// @param shape  with a surface model
-  explicit ExactSurface(const voxel::Shape& shape);
+  /// @param shape  with a surface model; must outlive this
+  explicit ExactSurface(const voxel::Shape& shape)
+      : ExactSurface(shape, voxel::SignedDistance(shape.mesh)) {}
+  explicit ExactSurface(voxel::Shape&& shape) = delete;
 
   /// The nearest point of the surface; its distance is infinite beyond the limit.
   /// @param x       [m], mesh frame
@@ -33,9 +35,20 @@ struct ExactSurface {
   /// @param likely  the surface is probably nearer than this, which is looked at first [m]
   voxel::ClosestPoint nearest(const Vec3& x, double limit, double likely = 0.0) const;
 
-  voxel::SignedDistance surface;
+  /// All that it takes of memory, itself included.
+  std::size_t bytes() const {
+    return sizeof(ExactSurface) + surface.bytes() + tree.bytes() + curved.bytes();
+  }
+
+  voxel::SignedTriangles surface;
   voxel::TriangleTree tree;
   CurvedSamples curved;
+
+ private:
+  ExactSurface(const voxel::Shape& shape, const voxel::SignedDistance& distance)
+      : surface(shape.mesh, distance),
+        tree(voxel::make_triangle_tree(distance, shape.surface.center)),
+        curved(shape.surface, distance) {}
 };
 
 /// Exact distances to the surfaces of shapes, by BodyState::shape. Null where the shape's surface

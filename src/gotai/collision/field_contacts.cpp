@@ -76,9 +76,8 @@ SearchReach FieldContacts::search_reach(const FieldReach& reach, const PairMotio
 
 // Farther from a crossing of edges than this the next sample is nearer to it.
 float FieldContacts::beside_crossings(const FieldReach& reach, const PairMotion& motion) const {
-  constexpr double kBeside = 0.6;  // of the spacing
   if (!reach.reduced || !is_exact_) return 0.0F;
-  return static_cast<float>(motion.rest_reach() + kBeside * samples_.spacing);
+  return static_cast<float>(motion.rest_reach() + kEdgeShare * samples_.spacing);
 }
 
 void FieldContacts::append_hits(const FieldReach& reach, const PairMotion& motion,

@@ -31,8 +31,8 @@ struct SurfaceScratch {
 /// How far contacts are looked for.
 struct FieldReach {
   double kept;  ///< largest gap of a candidate [m]
-  double
-      searched;  ///< of a sample, >= kept: those beside a crossing of edges are farther apart [m]
+  /// Largest distance of a sample, >= kept: beside a crossing of edges they are farther apart [m].
+  double searched;
   /// Contacts get reduced: of samples that are far away one in each packet is enough, and samples
   /// of edges move to where they cross Q's.
   bool reduced;
@@ -42,7 +42,8 @@ struct FieldReach {
 class FieldContacts {
  public:
   /// @param shapes  indexed by BodyState::shape, with surface models
-  /// @param smooth  likewise: samples slide on curved surfaces; empty: they stay where they are
+  /// @param smooth  likewise, for steps: samples slide on curved surfaces and, where Q's triangles
+  ///                are known, to crossings of edges; empty: they stay where they are
   /// @param X_QP    P's mesh frame in Q's
   FieldContacts(const model::BodyState& bodies, const BodyPair& pair,
                 std::span<const std::shared_ptr<const voxel::Shape>> shapes, ExactSurfaces smooth,
@@ -60,6 +61,9 @@ class FieldContacts {
   /// @return how far apart they are: SurfaceSearch::clearance [m]
   double append_if_near(const FieldReach& reach, double wide, const PairMotion& motion,
                         SurfaceScratch& scratch) const;
+
+  /// By how much Q's field may overestimate distances near edges [m].
+  double rounding() const { return kEdgeRounding * static_cast<double>(field_.field.cell); }
 
   /// Replaces gap and normal by those of Q's triangles. A sample of a face first gives way to the
   /// deepest of the mesh's vertices around it. A sample of an edge slides to where its edge is

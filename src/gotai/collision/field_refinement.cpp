@@ -34,15 +34,12 @@ void FieldContacts::refine(const ExactSurface& exact, ContactCandidate& c) const
   const FieldPoint own = deepest_vertex(sample, c.gap);
   const double error = kFieldError * field_.field.cell;
   const double limit = std::abs(own.distance) + error;
-  const std::int32_t edge = samples_.tree.edge[sample];
-  const Vec3 edge_P = edge < 0
-                          ? Vec3(Vec3::Zero())
-                          : to_double(samples_.tree.edge_direction[static_cast<std::size_t>(edge)]);
+  const voxel::SampleEdge* edge = samples_.tree.edge_of(sample);
+  const Vec3 edge_P = edge == nullptr ? Vec3(Vec3::Zero()) : to_double(edge->direction);
   Slid best = slide(exact, own.x_P, edge_P, 0.0, limit, own.distance);
-  if (edge >= 0 && std::isfinite(best.distance)) {
-    const auto& reach = samples_.tree.edge_reach[static_cast<std::size_t>(edge)];
+  if (edge != nullptr && std::isfinite(best.distance)) {
     const double far =
-        best.slope < 0.0 ? static_cast<double>(reach[1]) : -static_cast<double>(reach[0]);
+        best.slope < 0.0 ? static_cast<double>(edge->forward) : -static_cast<double>(edge->back);
     const Slid end =
         rises_at(own.x_P + far * edge_P, far * edge_P)
             ? slide(exact, own.x_P, edge_P, far, limit + std::abs(far), limit + std::abs(far))
@@ -99,10 +96,10 @@ void FieldContacts::refine_in_step(const ExactSurface& exact, ContactCandidate& 
 void FieldContacts::refine_crossing(const ExactSurface& exact, const Vec3& own_Q,
                                     ContactCandidate& c) const {
   const double reach = kCrossingError * field_.field.cell;
-  const auto edge =
-      static_cast<std::size_t>(samples_.tree.edge[static_cast<std::uint32_t>(c.feature)]);
+  // Only samples of edges cross.
+  const voxel::SampleEdge* edge = samples_.tree.edge_of(static_cast<std::uint32_t>(c.feature));
   const Vec3 own_P = X_QP_.inverse() * own_Q;
-  const Vec3 edge_P = to_double(samples_.tree.edge_direction[edge]);
+  const Vec3 edge_P = to_double(edge->direction);
   const auto slide_to = [&](double along, double distance) {
     return slide(exact, own_P, edge_P, along, std::abs(distance) + kFieldError * field_.field.cell,
                  distance);
@@ -135,19 +132,17 @@ void FieldContacts::put_at(const Vec3& x_P, ContactCandidate& c) const {
 
 // A sample or, if deeper, one of the vertices that it stands for.
 FieldContacts::FieldPoint FieldContacts::deepest_vertex(std::uint32_t sample, double gap) const {
-  const voxel::SurfaceTree& tree = samples_.tree;
   FieldPoint deepest{sample_point(samples_, sample), gap};
-  const std::uint32_t first = tree.first_vertex[sample];
-  const std::uint32_t last = tree.first_vertex[sample + 1];
+  const std::span<const std::array<float, 3>> vertices = samples_.tree.vertices_of(sample);
   std::array<FieldAtPoint, voxel::kLanes> values;
-  for (std::uint32_t begin = first; begin < last; begin += voxel::kLanes) {
-    const std::size_t count = std::min<std::size_t>(voxel::kLanes, last - begin);
-    look_up_field(field_.field, pose_, static_cast<float>(gap),
-                  std::span(tree.vertex).subspan(begin, count), std::span(values));
+  for (std::size_t begin = 0; begin < vertices.size(); begin += voxel::kLanes) {
+    const std::size_t count = std::min<std::size_t>(voxel::kLanes, vertices.size() - begin);
+    look_up_field(field_.field, pose_, static_cast<float>(gap), vertices.subspan(begin, count),
+                  std::span(values));
     for (std::size_t i = 0; i < count; ++i) {
       const double distance = static_cast<double>(values[i].distance);
       if (distance < deepest.distance) {
-        deepest = {samples_.center + to_double(tree.vertex[begin + i]), distance};
+        deepest = {samples_.center + to_double(vertices[begin + i]), distance};
       }
     }
   }
@@ -166,7 +161,7 @@ FieldContacts::Slid FieldContacts::slide(const ExactSurface& exact, const Vec3& 
   const Vec3 up = length > 1e-9 * limit
                       ? Vec3(away * (std::copysign(1.0, nearest.distance) / length))
                       : nearest.pseudonormal;
-  const Vec3& face = exact.surface.face_normal(nearest.triangle);
+  const Vec3 face = exact.surface.face_normal(nearest.triangle);
   const bool is_above_face = up.dot(face) > 1.0 - 1e-6;
   return {along, nearest.distance, up.dot(R_QP_ * edge_P), up,
           is_above_face ? face : Vec3(Vec3::Zero())};

@@ -152,18 +152,27 @@ void take_sliding(std::span<const Chunk> chunks, model::ContactSet& out) {
 
 /// The broad phase pairs bodies by the world's fastest. Drops pairs of shapes whose spheres are
 /// farther apart than the two bodies can come in the step.
+/// @param[out] is_distant  per pair; storage is reused
 void drop_distant_pairs(const model::BodyState& bodies, double dt, double margin,
-                        std::vector<BodyPair>& pairs) {
-  std::erase_if(pairs, [&](const BodyPair& pair) {
-    if (bodies.geometry[pair.body_b] != model::Geometry::shape) return false;
+                        std::vector<std::uint8_t>& is_distant, std::vector<BodyPair>& pairs) {
+  constexpr std::size_t kPairsPerTask = 256;
+  is_distant.resize(pairs.size());
+  parallel_for(pairs.size(), kPairsPerTask, [&](std::size_t p) {
+    const BodyPair& pair = pairs[p];
+    is_distant[p] = 0;
+    if (bodies.geometry[pair.body_b] != model::Geometry::shape) return;
     const double touching =
         bodies.bounding_radius[pair.body_a] + bodies.bounding_radius[pair.body_b];
     const double squared = (bodies.x_W[pair.body_a] - bodies.x_W[pair.body_b]).squaredNorm();
-    if (squared <= touching * touching) return false;
+    if (squared <= touching * touching) return;
     const PairMotion motion(bodies, pair, dt);
     const double far = touching + motion.reach(margin) + kAnchorTolerance * motion.size();
-    return squared > far * far;
+    is_distant[p] = squared > far * far ? 1 : 0;
   });
+  std::size_t kept = 0;
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    if (is_distant[p] == 0) pairs[kept++] = pairs[p];
+  pairs.resize(kept);
 }
 
 }  // namespace
@@ -172,6 +181,7 @@ struct CollisionCache::Storage {
   BroadPhase broad_phase;
   std::vector<double> radius;  // per body
   std::vector<BodyPair> candidates;
+  std::vector<std::uint8_t> is_distant;  // per candidate, before those are dropped
   // Per shape. The shapes are kept alive, so that a tree is known by its shape's address.
   std::vector<std::shared_ptr<const voxel::Shape>> shapes;
   std::vector<SphereTree> trees;
@@ -281,6 +291,7 @@ void CollisionCache::Storage::refresh_shapes(Shapes current, bool with_sphere_tr
     if (shapes[s] != current[s]) {
       forget_pairs();
       trees[s] = {};
+      exact[s] = nullptr;
       has_exact[s] = false;
     }
     shapes[s] = current[s];
@@ -329,12 +340,14 @@ SearchStatistics find_contacts(const model::BodyState& bodies, Shapes shapes,
   storage.refresh_radii(bodies, settings);
   storage.broad_phase.find_pairs(bodies, storage.radius, margin, storage.candidates);
   if (surface && options.dt > 0.0) {
-    drop_distant_pairs(bodies, options.dt, margin, storage.candidates);
+    drop_distant_pairs(bodies, options.dt, margin, storage.is_distant, storage.candidates);
   }
-  if (surface) storage.carry_over_memories(bodies);
   const bool anchored = surface && options.anchors != nullptr && options.dt > 0.0 &&
                         options.contacts == model::ContactTreatment::reduced;
-  if (anchored) storage.take_anchors(*options.anchors);
+  parallel_for(surface ? 2 : 0, 1, [&](std::size_t task) {
+    if (task == 0) storage.carry_over_memories(bodies);
+    if (task == 1 && anchored) storage.take_anchors(*options.anchors);
+  });
 
   // Pairs are cut into chunks by their number alone and joined in order: the result does not depend
   // on the number of threads.

@@ -38,14 +38,15 @@ void put_no_bulge(HitLanes& to, std::size_t lane) {
   }
 }
 
-// Brings together what is known of up to eight hits; the last one fills the other lanes.
+// Brings together what is known of up to eight hits. Other lanes keep what they have: nobody looks
+// at what becomes of them.
 void collect(const NearSurface& near, std::span<const SurfaceHit> hits, HitLanes& to) {
   const voxel::SurfaceTree& tree = near.samples.tree;
   to.any_edge = false;
   to.any_bulge = false;
   std::array<const CurvedSample*, voxel::kLanes> bulges{};
-  for (std::size_t lane = 0; lane < voxel::kLanes; ++lane) {
-    const SurfaceHit& hit = hits[std::min(lane, hits.size() - 1)];
+  for (std::size_t lane = 0; lane < hits.size(); ++lane) {
+    const SurfaceHit& hit = hits[lane];
     const std::uint32_t s = hit.sample;
     const voxel::PointPacket& packet = tree.points[s / voxel::kLanes];
     to.point[0][lane] = packet.x[s % voxel::kLanes];
@@ -53,20 +54,20 @@ void collect(const NearSurface& near, std::span<const SurfaceHit> hits, HitLanes
     to.point[2][lane] = packet.z[s % voxel::kLanes];
     to.distance[lane] = hit.distance;
     put(hit.gradient, to.gradient, lane);
-    put(tree.normal[s], to.axis, lane);
-    to.cosine[lane] = tree.cone_cosine[s];
-    put(tree.vector_area[s], to.area, lane);
-    const std::int32_t edge = tree.edge[s];
-    to.any_edge |= edge >= 0;
-    put(edge < 0 ? std::array<float, 3>{} : tree.edge_direction[static_cast<std::size_t>(edge)],
-        to.along, lane);
-    to.reach_back[lane] = edge < 0 ? 0.0F : tree.edge_reach[static_cast<std::size_t>(edge)][0];
-    to.reach_forward[lane] = edge < 0 ? 0.0F : tree.edge_reach[static_cast<std::size_t>(edge)][1];
+    const voxel::SurfaceElement& element = tree.elements[s];
+    put(unit_normal(element), to.axis, lane);
+    to.cosine[lane] = element.cone_cosine;
+    put(tree.vector_area(s), to.area, lane);
+    const voxel::SampleEdge* edge = tree.edge_of(s);
+    to.any_edge |= edge != nullptr;
+    put(edge == nullptr ? std::array<float, 3>{} : edge->direction, to.along, lane);
+    to.reach_back[lane] = edge == nullptr ? 0.0F : edge->back;
+    to.reach_forward[lane] = edge == nullptr ? 0.0F : edge->forward;
     if (near.curved != nullptr) bulges[lane] = near.curved->find(s);
     to.any_bulge |= bulges[lane] != nullptr;
   }
   if (!to.any_bulge) return;
-  for (std::size_t lane = 0; lane < voxel::kLanes; ++lane) {
+  for (std::size_t lane = 0; lane < hits.size(); ++lane) {
     if (bulges[lane] != nullptr) {
       put_bulge(*bulges[lane], to, lane);
     } else {
@@ -95,8 +96,8 @@ void append_lanes(const NearSurface& near, std::span<const SurfaceHit> hits,
     c.share_A = c.point_A;
     c.feature = surface_feature(near.samples_of_b ? 1 : 0, s);
     c.crosses = (from.crosses >> lane & 1U) != 0U;
-    c.near_edge = (from.rough >> lane & 1U) != 0U || tree.edge[s] >= 0 ||
-                  tree.first_vertex[s] < tree.first_vertex[s + 1];
+    c.near_edge =
+        (from.rough >> lane & 1U) != 0U || tree.edge_of(s) != nullptr || tree.has_vertices(s);
   }
 }
 

@@ -15,6 +15,7 @@
 #include "gotai/collision/reduction.h"
 #include "gotai/collision/surface_search.h"
 #include "gotai/voxel/surface_model.h"
+#include "gotai/voxel/surface_samples.h"
 
 namespace gotai::collision {
 
@@ -23,6 +24,13 @@ namespace gotai::collision {
 constexpr model::FeatureKey surface_feature(std::uint32_t direction, std::uint32_t sample) {
   return static_cast<model::FeatureKey>(direction) << 32U | sample;
 }
+
+/// Where an edge crosses another, the nearer of the two samples beside it is no farther along the
+/// edge than this many spacings.
+inline constexpr double kEdgeShare = 0.5 * voxel::kEdgeSpacing;
+
+/// Fields round edges off: near those the triangles may be nearer by this [cells].
+inline constexpr double kEdgeRounding = 0.4;
 
 /// The samples of a body P near a body Q, of which one is body a of the pair.
 struct NearSurface {

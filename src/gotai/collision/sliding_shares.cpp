@@ -34,6 +34,40 @@ void measure_shares(std::span<const ContactCandidate> candidates, const WrenchLa
   for (std::size_t k = 0; k < count; ++k) shares[k].centre_A /= shares[k].area;
 }
 
+// What opposes the slip of all parts of the shares.
+template <typename Weight>
+std::array<Resultant, kMaxReduced> sum_up_friction(std::span<const ContactCandidate> candidates,
+                                                   const WrenchLanes& lanes, const Weight& weight,
+                                                   const Vec3& normal, const SlipField& slip,
+                                                   const SharesFriction& shares) {
+  std::array<Resultant, kMaxReduced> sums;
+  // Several at a time: roots and quotients take long.
+  constexpr std::size_t kTogether = 8;
+  using Doubles = Eigen::Array<double, kTogether, 1>;
+  std::array<Vec3, kTogether> slipping;
+  Doubles squared_speed = Doubles::Ones();
+  Doubles weights = Doubles::Ones();
+  for (std::size_t first = 0; first < candidates.size(); first += kTogether) {
+    const std::size_t n = std::min(kTogether, candidates.size() - first);
+    for (std::size_t l = 0; l < n; ++l) {
+      const Vec3 v = slip.at(candidates[first + l].point_A);
+      slipping[l] = v - normal.dot(v) * normal;
+      squared_speed[static_cast<Eigen::Index>(l)] = slipping[l].squaredNorm();
+      weights[static_cast<Eigen::Index>(l)] = weight(first + l);
+    }
+    const Doubles scale = weights / squared_speed.sqrt();
+    for (std::size_t l = 0; l < n; ++l) {
+      if (!(squared_speed[static_cast<Eigen::Index>(l)] > 0.0)) continue;
+      const Vec3 force = scale[static_cast<Eigen::Index>(l)] * slipping[l];
+      const std::size_t k = lanes.nearest[first + l];
+      const Vec3 arm = candidates[first + l].point_A - shares[k].centre_A;
+      sums[k].force += force;
+      sums[k].moment += normal.dot(arm.cross(force));
+    }
+  }
+  return sums;
+}
+
 }  // namespace
 
 bool find_sliding_shares(std::span<const ContactCandidate> candidates, const WrenchLanes& lanes,
@@ -46,18 +80,8 @@ bool find_sliding_shares(std::span<const ContactCandidate> candidates, const Wre
            of_direction[c.feature >> 32U == 1 ? 1 : 0];
   };
   measure_shares(candidates, lanes, weight, count, shares);
-  std::array<Resultant, kMaxReduced> sums;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Vec3& x = candidates[i].point_A;
-    const Vec3 v = slip.at(x);
-    const Vec3 along = v - normal.dot(v) * normal;
-    const double speed = along.norm();
-    if (!(speed > 0.0)) continue;
-    const Vec3 force = (weight(i) / speed) * along;
-    Resultant& sum = sums[lanes.nearest[i]];
-    sum.force += force;
-    sum.moment += normal.dot((x - shares[lanes.nearest[i]].centre_A).cross(force));
-  }
+  const std::array<Resultant, kMaxReduced> sums =
+      sum_up_friction(candidates, lanes, weight, normal, slip, shares);
 
   const double spin = normal.dot(slip.w_A);
   const auto within_reach = [reach](double x) { return std::clamp(x, -reach, reach); };

@@ -37,8 +37,8 @@ void append_shape_contacts(const BodyState& bodies, const BodyPair& pair,
   const double r_B = tree_b.pyramid->grid.voxel_radius(level);
   const Mat3 R_WB = X_WB.q.toRotationMatrix();
   const Mat3 R_AB = X_BA.q.toRotationMatrix().transpose();
-  const std::vector<Vec3>& centers_a = tree_a.pyramid->level(level).center;
-  const std::vector<Vec3>& centers_b = tree_b.pyramid->level(level).center;
+  const std::vector<Vec3>& centers_a = tree_a.centers_of(level);
+  const std::vector<Vec3>& centers_b = tree_b.centers_of(level);
   auto i = out.size();
   out.resize(i + scratch.overlaps.size());
   out.pairs.push_back(
@@ -71,7 +71,7 @@ void descend_one(const SphereTree& tree, int level, SphereScratch& scratch, Test
   const auto keep = [&](int h, std::uint32_t voxel) {
     // Children touch their parent's sphere from inside: rounding must not lose them (erratum 13).
     const double r = tree.pyramid->grid.voxel_radius(h) * (h < level ? 1.0 + 1e-12 : 1.0);
-    return reaches(tree.pyramid->level(h).center[voxel], r);
+    return reaches(tree.centers_of(h)[voxel], r);
   };
   current.clear();
   ++tests[0];
@@ -118,7 +118,7 @@ class SpheresAboveFaces {
     });
 
     const double r = tree_.pyramid->grid.voxel_radius(level_);
-    const std::vector<Vec3>& centers = tree_.pyramid->level(level_).center;
+    const std::vector<Vec3>& centers = tree_.centers_of(level_);
     const Mat3 R_WA = X_WA_.q.toRotationMatrix();
     const Vec3 n_W = bodies_.q_WB[pair_.body_b] * face.normal;
     const Vec3& p_MA = bodies_.p_MB[pair_.body_a];

@@ -127,8 +127,7 @@ void descend(const SphereTree& a, const SphereTree& b, const Pose& X_BA, int lev
   };
   const double slack = kRounding * 2.0 * reach(1);
 
-  const Vec3 difference =
-      X_BA.p + R_BA * pyramid_a.level(1).center[0] - pyramid_b.level(1).center[0];
+  const Vec3 difference = X_BA.p + R_BA * a.centers_of(1)[0] - b.centers_of(1)[0];
   ++tests[0];
   if (difference.norm() > reach(1) + slack) return;
   make_room(scratch.current, 1, 1);
@@ -155,8 +154,8 @@ void descend(const SphereTree& a, const SphereTree& b, const Pose& X_BA, int lev
     if (scratch.current.group_count == 0) return;
   }
 
-  const std::vector<Vec3>& centers_a = pyramid_a.level(level).center;
-  const std::vector<Vec3>& centers_b = pyramid_b.level(level).center;
+  const std::vector<Vec3>& centers_a = a.centers_of(level);
+  const std::vector<Vec3>& centers_b = b.centers_of(level);
   const double touching = pyramid_a.grid.voxel_radius(level) + pyramid_b.grid.voxel_radius(level);
   for (std::uint32_t g = 0; g < scratch.current.group_count; ++g) {
     const Group group = scratch.current.groups[g];
@@ -180,8 +179,8 @@ DescentTrace descend_with_trace(const voxel::Pyramid& a, const voxel::Pyramid& b
     trace.tests[static_cast<std::size_t>(h) - 1] = candidates.size();
     std::vector<DescentTrace::VoxelPair>& colliding = trace.colliding.emplace_back();
     for (const DescentTrace::VoxelPair& pair : candidates) {
-      const Vec3 c_A = R_BA * a.level(h).center[pair.a] + X_BA.p;
-      const double distance = (c_A - b.level(h).center[pair.b]).norm();
+      const Vec3 c_A = R_BA * a.voxel_center(h, pair.a) + X_BA.p;
+      const double distance = (c_A - b.voxel_center(h, pair.b)).norm();
       if (distance - touching <= margin) colliding.push_back(pair);
     }
     std::sort(colliding.begin(), colliding.end());

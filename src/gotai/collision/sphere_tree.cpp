@@ -9,6 +9,7 @@ namespace gotai::collision {
 SphereTree make_sphere_tree(const voxel::Pyramid& pyramid) {
   SphereTree tree;
   tree.pyramid = &pyramid;
+  for (int h = 1; h <= pyramid.max_level(); ++h) tree.centers.push_back(pyramid.voxel_centers(h));
   for (int h = 1; h < pyramid.max_level(); ++h) {
     const voxel::PyramidLevel& parents = pyramid.level(h);
     const voxel::PyramidLevel& children = pyramid.level(h + 1);

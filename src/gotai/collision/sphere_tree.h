@@ -5,11 +5,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "gotai/core/types.h"
 #include "gotai/voxel/pyramid.h"
 
 namespace gotai::collision {
 
-/// The links of a pyramid, 8 bytes per voxel. The pyramid must outlive it.
+/// The links and centres of a pyramid, 32 bytes per voxel. The pyramid must outlive it.
 ///
 /// Octant of a child in its parent: bit 0 for the upper half in x, bit 1 in y, bit 2 in z.
 struct SphereTree {
@@ -19,6 +20,12 @@ struct SphereTree {
   };
   const voxel::Pyramid* pyramid = nullptr;
   std::vector<std::vector<Node>> levels;  ///< levels[h - 1] belongs to level h; 1..M-1
+  /// Centres of the voxels of levels 1..M [m], mesh frame.
+  std::vector<std::vector<Vec3>> centers;
+
+  const std::vector<Vec3>& centers_of(int level) const {
+    return centers[static_cast<std::size_t>(level) - 1];
+  }
 };
 
 /// @throws InvalidArgument when the children of a voxel are not in the order of their octants

@@ -49,6 +49,8 @@ std::span<const model::ContactMemory::Entry> remembered(
 
 // Gaps of the kept contacts of two shapes that may carry soon, measured to triangles: where a field
 // rounds, or in a step for all of them, so that no gap jumps when the field's smoothness does.
+// @param reach  contacts that are farther than the deepest by more, even less what the field may
+//               round off, are not measured [m]
 void refine_kept(const BothWays& ways, const ExactSurface* exact_a, const ExactSurface* exact_b,
                  double reach, bool in_step, SurfaceScratch& scratch) {
   double deepest = std::numeric_limits<double>::infinity();
@@ -57,9 +59,10 @@ void refine_kept(const BothWays& ways, const ExactSurface* exact_a, const ExactS
   }
   for (const std::uint32_t k : scratch.reduction.kept) {
     ContactCandidate& c = scratch.candidates[k];
-    if (c.gap > std::max(deepest, 0.0) + reach) continue;
     const bool is_of_b = (c.feature >> 32U) != 0;
     const FieldContacts& field = is_of_b ? ways.of_b : ways.of_a;
+    const double rounding = in_step && c.near_edge ? field.rounding() : 0.0;
+    if (c.gap > std::max(deepest, 0.0) + reach + rounding) continue;
     const ExactSurface* surface = is_of_b ? exact_a : exact_b;
     if (surface == nullptr) continue;
     if (in_step) {
@@ -145,7 +148,7 @@ void search_and_learn(const BodyState& bodies, const BodyPair& pair, Shapes shap
 double reach_beside_crossings(const voxel::SurfaceModel& a, const voxel::SurfaceModel& b,
                               double reach) {
   constexpr double kBeside = 0.4;  // of the spacing
-  if (a.tree.edge_direction.empty() || b.tree.edge_direction.empty()) return reach;
+  if (a.tree.edges.empty() || b.tree.edges.empty()) return reach;
   const auto cell = static_cast<double>(std::min(a.field.cell, b.field.cell));
   return std::max(reach, std::min(cell, reach + kBeside * std::max(a.spacing, b.spacing)));
 }

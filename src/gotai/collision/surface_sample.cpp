@@ -12,25 +12,26 @@ Vec3 sample_point(const voxel::SurfaceModel& model, std::uint32_t sample) {
 }
 
 double facing_area(const voxel::SurfaceModel& model, std::uint32_t sample, const Vec3& toward) {
-  return std::max(to_double(model.tree.vector_area[sample]).dot(toward),
+  return std::max(to_double(model.tree.vector_area(sample)).dot(toward),
                   1e-3 * model.spacing * model.spacing);
 }
 
 Vec3 fit_to_normal_cone(const voxel::SurfaceTree& tree, std::uint32_t sample, const Vec3& toward) {
   // More than 89 degrees from every normal: the surface lies along the other body, not against it.
   constexpr double kGrazing = 0.0175;
-  const Vec3 axis = to_double(tree.normal[sample]);
-  const double cosine = static_cast<double>(tree.cone_cosine[sample]);
+  const voxel::SurfaceElement& element = tree.elements[sample];
+  const voxel::SampleEdge* edge = tree.edge_of(sample);
+  const Vec3 axis = to_double(unit_normal(element));
+  const double cosine = static_cast<double>(element.cone_cosine);
   // Most samples of flat faces have one normal.
-  if (cosine >= 1.0 && tree.edge[sample] < 0) {
+  if (cosine >= 1.0 && edge == nullptr) {
     return toward.dot(axis) <= kGrazing ? Vec3(Vec3::Zero()) : axis;
   }
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   Vec3 d = toward;
-  if (tree.edge[sample] >= 0) {
+  if (edge != nullptr) {
     // Normals of an edge are perpendicular to it.
-    const auto edge = static_cast<std::size_t>(tree.edge[sample]);
-    const Vec3 along = to_double(tree.edge_direction[edge]).normalized();
+    const Vec3 along = to_double(edge->direction).normalized();
     d -= d.dot(along) * along;
     const double length = d.norm();
     if (length < 1e-6) return Vec3::Zero();

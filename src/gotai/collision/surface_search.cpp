@@ -1,6 +1,8 @@
 #include "gotai/collision/surface_search.h"
 
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <utility>
 
 #include "gotai/collision/exact_surface.h"
@@ -67,6 +69,17 @@ GOTAI_INLINE void gather_pairs(const std::int16_t* values, I8 index, F8& first, 
     first[i] = static_cast<float>(values[index[i]]);
     second[i] = static_cast<float>(values[index[i] + 1]);
   }
+}
+
+// The 32 bits from values[index] on of every lane.
+GOTAI_INLINE I8 gather_bits(const std::uint8_t* values, I8 index) {
+  I8 result;
+  for (int i = 0; i < kLanes; ++i) {
+    std::int32_t bits;
+    std::memcpy(&bits, values + index[i], sizeof(bits));
+    result[i] = bits;
+  }
+  return result;
 }
 
 GOTAI_INLINE F8 root(F8 x) {

@@ -1,6 +1,7 @@
 #include "gotai/core/thread_team.h"
 
 #include <thread>
+#include <utility>
 
 #include "gotai/core/parallel.h"
 

@@ -1,44 +1,69 @@
 #include "gotai/dynamics/integrate.h"
 
+#include <algorithm>
+#include <array>
+#include <span>
+
 #include "gotai/core/parallel.h"
 #include "gotai/dynamics/rotation.h"
+#include "gotai/dynamics/rotation_kernel.h"
 
 namespace gotai::dynamics {
 namespace {
 
-constexpr std::size_t kGrain = 256;  // bodies per task: a body costs about 0.1 us
+constexpr std::size_t kGrain = 256;     // bodies per task: a body costs less than 0.01 us
+constexpr std::size_t kGroupGrain = 8;  // groups of lanes per task: a group costs about 0.2 us
 
-/// Torque-free rotation that conserves L. The kinetic energy is split into a sphere with the middle
-/// principal moment, whose flow turns about the fixed L exactly, and the two remaining axes, whose
-/// flows turn about a body axis exactly; Strang composition of these is symplectic, of second
-/// order, and exact for spheres and symmetric tops (erratum 26).
-Quat rotate_free(const model::BodyState& bodies, model::BodyIndex i, double dt) {
-  const Vec3 inverse_moments = bodies.principal_moments[i].cwiseInverse();
-  const Quat q_WP = bodies.q_WB[i] * bodies.q_BP[i];
-  Vec3 L_P = q_WP.conjugate() * bodies.L_W[i];
-  Quat turn_P = Quat::Identity();
-  // Turns about a principal axis, with the coordinates across it in positive order.
-  const auto turn = [&](int axis, int next, int last, double time) {
-    const double half_angle = 0.5 * time * (inverse_moments[axis] - inverse_moments[1]) * L_P[axis];
-    const auto [c, sinc] = cosine_and_sinc(half_angle * half_angle);
-    const double s = half_angle * sinc;
-    const double w = turn_P.w();
-    const Vec3 v = turn_P.vec();
-    turn_P.w() = w * c - v[axis] * s;
-    turn_P.vec()[axis] = w * s + v[axis] * c;
-    turn_P.vec()[next] = v[next] * c + v[last] * s;
-    turn_P.vec()[last] = v[last] * c - v[next] * s;
-    const double cosine = c * c - s * s;
-    const double sine = 2.0 * c * s;
-    const double L_next = L_P[next];
-    L_P[next] = cosine * L_next + sine * L_P[last];
-    L_P[last] = cosine * L_P[last] - sine * L_next;
-  };
-  turn(0, 1, 2, 0.5 * dt);
-  turn(2, 0, 1, dt);
-  turn(0, 1, 2, 0.5 * dt);
-  const Quat sphere = rotation_increment(inverse_moments[1] * bodies.L_W[i], dt);
-  return (sphere * (q_WP * turn_P) * bodies.q_BP[i].conjugate()).normalized();
+template <std::size_t kCount, typename Column>
+void set_lane(RotationLanes::Row (&rows)[kCount], std::size_t l, const Column& column) {
+  for (std::size_t c = 0; c < kCount; ++c) rows[c].lane[l] = column[static_cast<Eigen::Index>(c)];
+}
+/// Rotates dynamic bodies freely, and refreshes what follows from their orientation.
+/// @param which  at most as many as there are lanes
+void rotate_bodies(model::BodyState& bodies, std::span<const model::BodyIndex> which, double dt) {
+  RotationLanes lanes;
+  for (std::size_t l = 0; l < kRotationLanes; ++l) {
+    const model::BodyIndex i = which[std::min(l, which.size() - 1)];
+    set_lane(lanes.q_WB, l, bodies.q_WB[i].coeffs());
+    set_lane(lanes.q_BP, l, bodies.q_BP[i].coeffs());
+    set_lane(lanes.L_W, l, bodies.L_W[i]);
+    set_lane(lanes.principal_moments, l, bodies.principal_moments[i]);
+  }
+  rotate_free(lanes, dt);
+  for (std::size_t l = 0; l < which.size(); ++l) {
+    const model::BodyIndex i = which[l];
+    const auto& q = lanes.q_WB;
+    bodies.q_WB[i] = {q[3].lane[l], q[0].lane[l], q[1].lane[l], q[2].lane[l]};
+    const auto& inverse_I = lanes.inverse_I_W;
+    const double xx = inverse_I[0].lane[l], xy = inverse_I[1].lane[l], xz = inverse_I[2].lane[l];
+    const double yy = inverse_I[3].lane[l], yz = inverse_I[4].lane[l], zz = inverse_I[5].lane[l];
+    bodies.inverse_I_W[i] << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+    bodies.w_W[i] = {lanes.w_W[0].lane[l], lanes.w_W[1].lane[l], lanes.w_W[2].lane[l]};
+  }
+}
+
+/// Poses of bodies [first, end), at most as many as there are lanes.
+void advance_group(model::BodyState& bodies, const model::Update& update, model::BodyIndex first,
+                   model::BodyIndex end, double dt) {
+  std::array<model::BodyIndex, kRotationLanes> dynamic;
+  std::size_t count = 0;
+  for (model::BodyIndex i = first; i < end; ++i) {
+    if (bodies.kind[i] == model::BodyKind::fixed) continue;
+    bodies.x_W[i] += dt * bodies.v_W[i];
+    if (bodies.is_dynamic(i)) {
+      dynamic[count++] = i;
+    } else {
+      bodies.q_WB[i] = rotate(bodies.q_WB[i], bodies.w_W[i], dt);
+    }
+  }
+  if (count == 0) return;
+  rotate_bodies(bodies, std::span(dynamic).first(count), dt);
+  if (update.push_v.empty()) return;
+  for (const model::BodyIndex i : std::span(dynamic).first(count)) {
+    bodies.x_W[i] += dt * update.push_v[i];
+    bodies.q_WB[i] = rotate(bodies.q_WB[i], update.push_w[i], dt);
+    model::refresh_derived(bodies, i);
+  }
 }
 
 }  // namespace
@@ -65,20 +90,11 @@ void apply_update(model::BodyState& bodies, const model::Update& update) {
 }
 
 void advance_poses(model::BodyState& bodies, const model::Update& update, double dt) {
-  parallel_for(bodies.size(), kGrain, [&](std::size_t k) {
-    const auto i = static_cast<model::BodyIndex>(k);
-    if (bodies.kind[i] == model::BodyKind::fixed) return;
-    bodies.x_W[i] += dt * bodies.v_W[i];
-    if (!bodies.is_dynamic(i)) {
-      bodies.q_WB[i] = rotate(bodies.q_WB[i], bodies.w_W[i], dt);
-      return;
-    }
-    bodies.q_WB[i] = rotate_free(bodies, i, dt);
-    if (!update.push_v.empty()) {
-      bodies.x_W[i] += dt * update.push_v[i];
-      bodies.q_WB[i] = rotate(bodies.q_WB[i], update.push_w[i], dt);
-    }
-    model::refresh_derived(bodies, i);
+  const std::size_t groups = (bodies.size() + kRotationLanes - 1) / kRotationLanes;
+  parallel_for(groups, kGroupGrain, [&](std::size_t g) {
+    const std::size_t end = std::min(bodies.size(), (g + 1) * kRotationLanes);
+    advance_group(bodies, update, static_cast<model::BodyIndex>(g * kRotationLanes),
+                  static_cast<model::BodyIndex>(end), dt);
   });
 }
 

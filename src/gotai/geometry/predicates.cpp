@@ -95,6 +95,11 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
                            std::abs(w.z()) * (std::abs(u.x() * v.y()) + std::abs(u.y() * v.x()));
   // Shewchuk's bound for this formula, generously rounded up.
   if (std::abs(det) > 8.0 * kEpsilon * permanent) return sign_of(det);
+  // What meshes are full of: corners in common, and faces in a plane of the axes.
+  if (d == a || d == b || d == c) return 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (u[axis] == 0.0 && v[axis] == 0.0 && w[axis] == 0.0) return 0;
+  }
   return exact_orientation(a, b, c, d);
 }
 
@@ -103,6 +108,7 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
   const double right = (b.y() - a.y()) * (c.x() - a.x());
   if (std::abs(left - right) > 4.0 * kEpsilon * (std::abs(left) + std::abs(right)))
     return sign_of(left - right);
+  if (c == a || c == b) return 0;
   return exact_orientation(a, b, c);
 }
 

@@ -4,6 +4,8 @@
 #include <bit>
 #include <limits>
 
+#include "gotai/core/parallel.h"
+
 namespace gotai::impulse {
 namespace {
 constexpr std::uint32_t kUnsupported = std::numeric_limits<std::uint32_t>::max();
@@ -139,15 +141,20 @@ void ContactScheduler::assign_waves(const model::BodyState& bodies,
 const ContactSchedule& ContactScheduler::build(const model::BodyState& bodies,
                                                const model::ContactSet& contacts,
                                                std::uint32_t largest_stack) {
-  measure_heights(bodies, contacts);
-  measure_islands(bodies, contacts);
   const auto pair_count = static_cast<std::uint32_t>(contacts.pairs.size());
   const auto reset_order = [&] {
     order_.resize(pair_count);
     for (std::uint32_t p = 0; p < pair_count; ++p) order_[p] = p;
   };
-  reset_order();
-  sort_top_down(contacts);
+  parallel_for(2, 1, [&](std::size_t task) {
+    if (task == 0) {
+      measure_heights(bodies, contacts);
+      reset_order();
+      sort_top_down(contacts);
+    } else {
+      measure_islands(bodies, contacts);
+    }
+  });
   assign_waves(bodies, contacts, largest_stack);
 
   reset_order();

@@ -5,7 +5,7 @@
 // foreach_target.h must come first.
 #include <hwy/highway.h>
 
-#include "gotai/core/instruction_set.h"
+#include "gotai/core/highway_target.h"
 #include "gotai/impulse/soft_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -382,27 +382,12 @@ namespace gotai::impulse {
 HWY_EXPORT(Visit);
 HWY_EXPORT(Residual);
 
-namespace {
-
-// Before the first choice of a target.
-void choose_target() {
-  static const bool chosen = [] {
-    const Instructions wanted = wanted_instructions();
-    if (wanted == Instructions::portable) hwy::DisableTargets(~std::int64_t{HWY_STATIC_TARGET});
-    if (wanted == Instructions::avx2) hwy::DisableTargets(HWY_AVX2 - 1);  // all that are better
-    return true;
-  }();
-  static_cast<void>(chosen);
-}
-
-}  // namespace
-
 void soft_pass(SoftPass pass, const SoftProblem& problem, std::size_t first, std::size_t count) {
-  choose_target();
+  choose_highway_target();
   HWY_DYNAMIC_DISPATCH(Visit)(pass, problem, first, count);
 }
 float soft_residual(const SoftProblem& problem, std::size_t count) {
-  choose_target();
+  choose_highway_target();
   return HWY_DYNAMIC_DISPATCH(Residual)(problem, count);
 }
 

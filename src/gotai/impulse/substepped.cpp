@@ -50,13 +50,25 @@ Softness softness(double frequency_hz, double h) {
 // Stands for a pair as a whole in the memory, after its contacts: the impulse against rolling.
 constexpr model::FeatureKey kRollingFeature = std::numeric_limits<model::FeatureKey>::max();
 
-SoftBody to_soft(const Vec3& v, const Vec3& w) {
-  SoftBody body;
+// Number by number: a copy of what was just written in parts would wait for the parts.
+void set_velocity(const Vec3& v, const Vec3& w, SoftBody& now, SoftBody& before) {
   for (int c = 0; c < 3; ++c) {
-    body.v[c] = static_cast<float>(v[c]);
-    body.w[c] = static_cast<float>(w[c]);
+    now.v[c] = before.v[c] = static_cast<float>(v[c]);
+    now.w[c] = before.w[c] = static_cast<float>(w[c]);
   }
-  return body;
+}
+
+// Impulse of a contact [N s], W, from its parts along n, t and n x t.
+inline void write_impulse(const ContactRow& row, std::size_t l, const Lane& p_n, const Lane& p_1,
+                          const Lane& p_2, Vec3& impulse) {
+  const auto at = [l](const Lane& lane) { return static_cast<double>(lane.value[l]); };
+  const double n[3] = {at(row.n.x), at(row.n.y), at(row.n.z)};
+  const double t[3] = {at(row.t.x), at(row.t.y), at(row.t.z)};
+  const double normal = at(p_n), along_t = at(p_1), across = at(p_2);
+  for (int c = 0; c < 3; ++c) {
+    const int d = (c + 1) % 3, e = (c + 2) % 3;
+    impulse[c] = normal * n[c] + along_t * t[c] + across * (n[d] * t[e] - n[e] * t[d]);
+  }
 }
 
 }  // namespace
@@ -85,9 +97,15 @@ void SubsteppedConstraint::prepare(const model::BodyState& bodies,
   contacts_ = &contacts;
   plan_ = plan;
   substep_ = 0;
-  lay_out_batches(bodies);
-  find_memories(memory);
-  read_velocities(bodies);
+  schedule_ = &scheduler_.build(bodies, contacts, kLargestStack);
+  parallel_for(2, 1, [&](std::size_t task) {
+    if (task == 0) {
+      lay_out_batches();
+    } else {
+      find_memories(memory);
+      read_velocities(bodies);
+    }
+  });
   // As stages, so that rows get into the caches of those who will sweep them.
   add_at_once(SoftPass::prepare);
   run_stages(stages_, kLeastPerWave, [&](SoftPass pass, std::uint32_t first, std::uint32_t count) {
@@ -107,8 +125,7 @@ void SubsteppedConstraint::prepare(const model::BodyState& bodies,
   }
 }
 
-void SubsteppedConstraint::lay_out_batches(const model::BodyState& bodies) {
-  schedule_ = &scheduler_.build(bodies, *contacts_, kLargestStack);
+void SubsteppedConstraint::lay_out_batches() {
   batches_.clear();
   in_batch_.clear();
   slots_.resize(contacts_->size());
@@ -261,7 +278,7 @@ void SubsteppedConstraint::read_velocities(const model::BodyState& bodies) {
   velocity_[0] = {};
   before_.resize(bodies.size() + 1);
   parallel_for(bodies.size(), kBodyGrain, [&](std::size_t i) {
-    velocity_[i + 1] = before_[i + 1] = to_soft(bodies.v_W[i], bodies.w_W[i]);
+    set_velocity(bodies.v_W[i], bodies.w_W[i], velocity_[i + 1], before_[i + 1]);
   });
 }
 
@@ -333,16 +350,6 @@ void SubsteppedConstraint::relax(const model::BodyState& bodies, model::Update& 
   write_changes(bodies, update);
 }
 
-Vec3 SubsteppedConstraint::impulse_of(std::uint32_t contact, Lane ContactRow::*p_n,
-                                      Lane ContactRow::*p_1, Lane ContactRow::*p_2) const {
-  const auto& [r, lane] = slots_[contact];
-  const ContactRow& row = rows_[r];
-  const Vec3 normal = get(row.n, lane);
-  const Vec3 t1 = get(row.t, lane);
-  return (row.*p_n).value[lane] * normal + (row.*p_1).value[lane] * t1 +
-         (row.*p_2).value[lane] * normal.cross(t1);
-}
-
 void SubsteppedConstraint::remember(model::ContactMemory& memory) {
   // Also contacts that only carried for a while: forgotten, they may be left out of the next step's
   // reduction and found again a step later, deeper.
@@ -362,8 +369,12 @@ void SubsteppedConstraint::remember(model::ContactMemory& memory) {
     std::uint32_t m = entry_of_[p];
     for (std::uint32_t c = pairs[p].begin; c < pairs[p].end; ++c) {
       if (!carried(c)) continue;
-      memory.entries[m++] = {pairs[p].body_a, pairs[p].body_b, contacts_->feature[c],
-                             impulse_of(c, &ContactRow::p_n, &ContactRow::p_1, &ContactRow::p_2)};
+      model::ContactMemory::Entry& entry = memory.entries[m++];
+      entry.body_a = pairs[p].body_a;
+      entry.body_b = pairs[p].body_b;
+      entry.feature = contacts_->feature[c];
+      const auto& [r, l] = slots_[c];
+      write_impulse(rows_[r], l, rows_[r].p_n, rows_[r].p_1, rows_[r].p_2, entry.impulse_W);
     }
     if (m == entry_of_[p + 1]) return;
     const auto [k, lane] = rolling_slots_[p];
@@ -382,8 +393,9 @@ void SubsteppedConstraint::finish(const model::BodyState& bodies, model::Update&
   write_changes(bodies, update);
   parallel_for(contacts_->size(), kBodyGrain, [&](std::size_t k) {
     const auto c = static_cast<std::uint32_t>(k);
-    update.contact_impulse[c] =
-        impulse_of(c, &ContactRow::total_n, &ContactRow::total_1, &ContactRow::total_2);
+    const auto& [r, l] = slots_[c];
+    write_impulse(rows_[r], l, rows_[r].total_n, rows_[r].total_1, rows_[r].total_2,
+                  update.contact_impulse[c]);
   });
 }
 

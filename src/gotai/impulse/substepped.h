@@ -57,7 +57,7 @@ class SubsteppedConstraint final : public ImpulseMethod {
     std::uint32_t end = 0;
   };
 
-  void lay_out_batches(const model::BodyState& bodies);
+  void lay_out_batches();
   void fill_batch(std::size_t k, const model::BodyState& bodies,
                   const model::MaterialTable& materials, const model::ContactMemory& memory);
   void fill_rows(std::uint32_t p, std::size_t lane, std::uint32_t row_begin, double friction,
@@ -72,9 +72,6 @@ class SubsteppedConstraint final : public ImpulseMethod {
   /// Arm of the largest torque against rolling [m].
   double rolling_arm(const model::BodyState& bodies, model::BodyIndex a, model::BodyIndex b) const;
   void remember(model::ContactMemory& memory);
-  /// Impulse of a contact [N s], W. @param p  its parts along n, t and n x t
-  Vec3 impulse_of(std::uint32_t contact, Lane ContactRow::*p_n, Lane ContactRow::*p_1,
-                  Lane ContactRow::*p_2) const;
   /// Moves the warm start of each pair towards the impulses of equal wrench that press evenly, by
   /// area: redundant contacts share the load, as under a uniform tiny compliance (erratum 23).
   /// Only of pairs that slide: there pressure decides the torque of friction. At rest it would

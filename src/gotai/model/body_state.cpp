@@ -69,11 +69,6 @@ void refresh_derived(BodyState& bodies, BodyIndex index) {
   bodies.w_W[index] = bodies.inverse_I_W[index] * bodies.L_W[index];
 }
 
-Vec3 angular_momentum(const BodyState& bodies, BodyIndex index, const Vec3& w_W) {
-  const Quat& q = bodies.q_WB[index];
-  return q * (bodies.I_B[index] * (q.conjugate() * w_W));
-}
-
 void validate(const BodyState& bodies) {
   const std::size_t count = bodies.size();
   for_each_column(const_cast<BodyState&>(bodies), [count](const auto& column) {

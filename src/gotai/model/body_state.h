@@ -79,7 +79,10 @@ void set_mass(BodyState& bodies, BodyIndex index, double mass, const Mat3& I_B);
 /// Recomputes inverse_I_W and w_W of one body from its orientation and angular momentum.
 void refresh_derived(BodyState& bodies, BodyIndex index);
 /// I_W w for a dynamic body: the angular momentum that belongs to an angular velocity [kg m^2/s].
-Vec3 angular_momentum(const BodyState& bodies, BodyIndex index, const Vec3& w_W);
+inline Vec3 angular_momentum(const BodyState& bodies, BodyIndex index, const Vec3& w_W) {
+  const Quat& q = bodies.q_WB[index];
+  return q * (bodies.I_B[index] * (q.conjugate() * w_W));
+}
 /// Checks sizes, finiteness, unit quaternions.
 /// @throws SimulationError naming body and array
 void validate(const BodyState& bodies);

@@ -36,7 +36,7 @@ bool overlaps_voxels(const voxel::Shape& shape, int finest, const Vec3& center_M
     const double reach = radius + pyramid.grid.voxel_radius(h);
     std::vector<std::uint32_t> children;
     for (const std::uint32_t v : voxels) {
-      if ((level.center[v] - center_M).squaredNorm() >= reach * reach) continue;
+      if ((pyramid.voxel_center(h, v) - center_M).squaredNorm() >= reach * reach) continue;
       if (h == finest) return true;
       for (std::uint32_t c = level.first_child[v]; c < level.first_child[v + 1]; ++c) {
         children.push_back(c);

@@ -1,12 +1,13 @@
 /// @file
-/// A narrow-band signed distance field in the shape's own frame: 16-bit values on a lattice, stored
-/// in bricks near the surface, with a coarse lattice for everywhere else.
+/// A narrow-band signed distance field in the shape's own frame: 12-bit values on a lattice, stored
+/// in bricks near the surface, with a coarse lattice of 16-bit values for everywhere else.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
+#include "gotai/core/bytes_of.h"
 #include "gotai/core/types.h"
 #include "gotai/voxel/signed_distance.h"
 
@@ -14,8 +15,15 @@ namespace gotai::voxel {
 
 inline constexpr int kBrickCells = 8;  ///< cells per side of a brick
 inline constexpr int kBrickNodes = kBrickCells + 1;
-/// Values stored per brick: 9^3 lattice nodes, x fastest, and padding so that pairs can be read.
-inline constexpr int kBrickStride = 736;
+/// Values of a brick are this many units of 12 bits to a cell: the most with which they reach five
+/// cells. Distances of whole cells are exact.
+inline constexpr int kUnitsPerCell = 409;
+inline constexpr int kLargestUnits = 2047;  ///< values beyond are clamped
+/// Rows of nine values along x, packed from the lowest bit on: of the 32 bits from byte 3 i / 2 of
+/// a row, values i and i + 1 are the lowest 24 or, for odd i, those above the lowest four.
+inline constexpr int kRowBytes = 14;
+inline constexpr int kLayerBytes = kRowBytes * kBrickNodes;    ///< rows by ascending y
+inline constexpr int kBrickBytes = kLayerBytes * kBrickNodes;  ///< layers by ascending z
 inline constexpr std::int32_t kNoBrickOutside = -1;
 inline constexpr std::int32_t kNoBrickInside = -2;
 inline constexpr int kCoarseCells = 4;   ///< fine cells per coarse cell and side
@@ -28,7 +36,7 @@ struct DistanceField {
   float low = 0.0F;           ///< lowest corner of the cubic lattice, same on all axes [m], S
   float cell = 0.0F;          ///< edge of a fine cell [m]
   std::int32_t bricks = 0;    ///< bricks per side
-  float scale = 0.0F;         ///< [m] per unit of `values`
+  float scale = 0.0F;         ///< [m] per unit of `values`: cell / kUnitsPerCell
   float coarse_scale = 0.0F;  ///< [m] per unit of `coarse`
   /// Bricks hold every point nearer to the surface than this [m].
   float band = 0.0F;
@@ -42,17 +50,14 @@ struct DistanceField {
   /// Brick of each 8^3 cells, x fastest; where the surface is farther than `band`: kNoBrickOutside
   /// or kNoBrickInside.
   std::vector<std::int32_t> brick;
-  std::vector<std::int16_t> values;  ///< kBrickStride per brick
+  std::vector<std::uint8_t> values;  ///< kBrickBytes per brick
   /// Distances on every kCoarseCells-th node; (2 bricks + 1)^3, x fastest, with one value of
   /// padding.
   std::vector<std::int16_t> coarse;
 
   int cells() const { return bricks * kBrickCells; }
   int coarse_nodes() const { return bricks * (kBrickCells / kCoarseCells) + 1; }
-  std::size_t bytes() const {
-    return brick.size() * sizeof(std::int32_t) +
-           (values.size() + coarse.size()) * sizeof(std::int16_t);
-  }
+  std::size_t bytes() const { return bytes_of(brick) + bytes_of(values) + bytes_of(coarse); }
 };
 
 /// Samples the distance to a surface.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "gotai/core/bytes_of.h"
 #include "gotai/core/error.h"
 
 namespace gotai::voxel {
@@ -25,6 +26,8 @@ std::vector<VoxelIndex> merge(const std::vector<VoxelIndex>& children,
     first_child.push_back(static_cast<std::uint32_t>(i));
   }
   first_child.push_back(static_cast<std::uint32_t>(children.size()));
+  parents.shrink_to_fit();
+  first_child.shrink_to_fit();
   return parents;
 }
 
@@ -39,6 +42,20 @@ double VoxelGrid::voxel_radius(int level) const {
 Vec3 VoxelGrid::voxel_center(int level, const VoxelIndex& index) const {
   const double s = voxel_edge(level);
   return origin + s * Vec3(index[0] + 0.5, index[1] + 0.5, index[2] + 0.5);
+}
+
+std::size_t Pyramid::bytes() const {
+  std::size_t total = bytes_of(levels);
+  for (const PyramidLevel& level : levels)
+    total += bytes_of(level.index) + bytes_of(level.first_child);
+  return total;
+}
+
+std::vector<Vec3> Pyramid::voxel_centers(int h) const {
+  std::vector<Vec3> centers;
+  centers.reserve(level(h).size());
+  for (const VoxelIndex& index : level(h).index) centers.push_back(grid.voxel_center(h, index));
+  return centers;
 }
 
 VoxelGrid grid_around(const Box3& box) {
@@ -71,11 +88,6 @@ Pyramid pyramid_from_surface(const VoxelGrid& grid, int max_level,
   pyramid.levels.back().index = std::move(surface);
   for (std::size_t h = pyramid.levels.size() - 1; h > 0; --h)
     pyramid.levels[h - 1].index = merge(pyramid.levels[h].index, pyramid.levels[h - 1].first_child);
-  for (int h = 1; h <= max_level; ++h) {
-    PyramidLevel& level = pyramid.levels[static_cast<std::size_t>(h) - 1];
-    level.center.reserve(level.size());
-    for (const VoxelIndex& index : level.index) level.center.push_back(grid.voxel_center(h, index));
-  }
   return pyramid;
 }
 

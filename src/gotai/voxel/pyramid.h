@@ -43,7 +43,6 @@ struct PyramidLevel {
   /// size() + 1 offsets: the children of voxel i are [first_child[i], first_child[i+1]) of the next
   /// level. Empty at the finest level.
   std::vector<std::uint32_t> first_child;
-  std::vector<Vec3> center;  ///< voxel centres [m], mesh frame
 
   std::size_t size() const { return index.size(); }
 };
@@ -55,6 +54,11 @@ struct Pyramid {
 
   int max_level() const { return static_cast<int>(levels.size()); }
   const PyramidLevel& level(int h) const { return levels[static_cast<std::size_t>(h) - 1]; }
+  std::size_t bytes() const;  ///< on the heap
+  /// Centre of voxel i of level h [m], mesh frame.
+  Vec3 voxel_center(int h, std::size_t i) const { return grid.voxel_center(h, level(h).index[i]); }
+  /// Of all voxels of level h.
+  std::vector<Vec3> voxel_centers(int h) const;
 };
 
 /// Takes the surface of the inside voxels at the finest level and merges it 8 to 1 up to level 1

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "gotai/core/bytes_of.h"
 #include "gotai/core/error.h"
 #include "gotai/voxel/inside.h"
 #include "gotai/voxel/inside_soup.h"
@@ -17,7 +18,7 @@ namespace gotai::voxel {
 namespace {
 
 /// Raise it whenever the same mesh and options lead to another shape.
-constexpr std::uint32_t kRecipe = 3;
+constexpr std::uint32_t kRecipe = 4;
 
 template <typename Simplex>
 void check_indices(const std::vector<Simplex>& simplices, std::size_t vertices, const char* kind) {
@@ -161,13 +162,20 @@ double bounding_radius(const geometry::Mesh& mesh, const Vec3& center) {
   return std::sqrt(squared);
 }
 
-double voxel_bounding_radius(const PyramidLevel& level, double voxel_radius, const Vec3& center) {
+double voxel_bounding_radius(const Pyramid& pyramid, int level, const Vec3& center) {
   double squared = 0.0;
-  for (const Vec3& c : level.center) squared = std::max(squared, (c - center).squaredNorm());
-  return std::sqrt(squared) + voxel_radius;
+  for (const Vec3& c : pyramid.voxel_centers(level))
+    squared = std::max(squared, (c - center).squaredNorm());
+  return std::sqrt(squared) + pyramid.grid.voxel_radius(level);
 }
 
 }  // namespace
+
+std::size_t Shape::bytes() const {
+  return sizeof(Shape) + bytes_of(mesh.vertices) + bytes_of(mesh.triangles) +
+         bytes_of(mesh.tetrahedra) + pyramid.bytes() + surface.bytes() +
+         bytes_of(voxel_bounding_radius);
+}
 
 Hash128 content_hash(const geometry::Mesh& mesh, const ShapeOptions& options) {
   Hasher hasher;
@@ -212,8 +220,7 @@ void derive_radii(Shape& shape) {
   shape.bounding_radius = bounding_radius(shape.mesh, center);
   shape.voxel_bounding_radius.clear();
   for (int h = 1; h <= pyramid.max_level(); ++h)
-    shape.voxel_bounding_radius.push_back(
-        voxel_bounding_radius(pyramid.level(h), pyramid.grid.voxel_radius(h), center));
+    shape.voxel_bounding_radius.push_back(voxel_bounding_radius(pyramid, h, center));
 }
 
 }  // namespace gotai::voxel

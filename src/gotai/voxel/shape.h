@@ -44,6 +44,9 @@ struct Shape {
   /// rho of the corrected time step (erratum 29).
   std::vector<double> voxel_bounding_radius;
   Hash128 content;  ///< content_hash of mesh and options: the key of the cache
+
+  /// All that it takes of memory, itself included, but for texts.
+  std::size_t bytes() const;
 };
 
 /// Hash of everything that a shape is made from and of the way it is made: two shapes with equal

@@ -20,7 +20,7 @@ namespace gotai::voxel {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'G', 'O', 'T', 'A', 'I', 'S', 'H', 'P'};
-constexpr std::uint32_t kFormatVersion = 5;
+constexpr std::uint32_t kFormatVersion = 6;
 
 struct Header {
   std::array<char, 8> magic = kMagic;

@@ -4,7 +4,8 @@
 ///
 /// Layout, little-endian: "GOTAISHP", format version (u32), 0, payload size (u64), XXH3-128 of the
 /// payload (2 u64), payload. The payload holds name, level, content hash, mesh, mass properties,
-/// warnings, grid and the finest level's voxels; what follows from them is made anew on reading.
+/// warnings, grid, the finest level's voxels and the surface model; what follows from them is made
+/// anew on reading.
 #pragma once
 
 #include <cstddef>

@@ -8,49 +8,12 @@
 #include <tuple>
 
 #include "gotai/core/error.h"
+#include "gotai/voxel/triangle_point.h"
 
 namespace gotai::voxel {
 namespace {
 
 constexpr std::uint32_t kLeafSize = 4;
-
-// Which feature of a triangle is nearest: corner 0..2, edge 3..5 (edge e from corner e), face 6.
-struct TrianglePoint {
-  Vec3 point;
-  int feature;
-};
-
-// Ericson 2005, "Real-Time Collision Detection", section 5.1.5.
-TrianglePoint closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a;
-  const Vec3 ac = c - a;
-  const Vec3 ap = p - a;
-  const double d1 = ab.dot(ap);
-  const double d2 = ac.dot(ap);
-  if (d1 <= 0.0 && d2 <= 0.0) return {a, 0};
-  const Vec3 bp = p - b;
-  const double d3 = ab.dot(bp);
-  const double d4 = ac.dot(bp);
-  if (d3 >= 0.0 && d4 <= d3) return {b, 1};
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return {a + ab * (d1 / (d1 - d3)), 3};
-  const Vec3 cp = p - c;
-  const double d5 = ab.dot(cp);
-  const double d6 = ac.dot(cp);
-  if (d6 >= 0.0 && d5 <= d6) return {c, 2};
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return {a + ac * (d2 / (d2 - d6)), 5};
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
-    return {b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 4};
-  }
-  const double scale = 1.0 / (va + vb + vc);
-  return {a + ab * (vb * scale) + ac * (vc * scale), 6};
-}
-
-double squared_distance_to_box(const Vec3& p, const Vec3& low, const Vec3& high) {
-  return (low - p).cwiseMax(p - high).cwiseMax(0.0).squaredNorm();
-}
 
 double corner_angle(const Vec3& at, const Vec3& to_b, const Vec3& to_c) {
   const Vec3 u = to_b - at;
@@ -92,14 +55,12 @@ void SignedDistance::merge_vertices(const geometry::Mesh& mesh) {
 }
 
 void SignedDistance::find_normals() {
-  face_normal_.resize(triangles_.size());
+  face_normal_.reserve(triangles_.size());
   vertex_normal_.assign(vertices_.size(), Vec3::Zero());
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     const auto [a, b, c] = triangles_[t];
-    const Vec3 n = (vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[a]);
-    const double length = n.norm();
-    face_normal_[t] = length > 0.0 ? Vec3(n / length) : Vec3::Zero();
-    if (!(length > 0.0)) continue;
+    face_normal_.push_back(triangle_normal(vertices_[a], vertices_[b], vertices_[c]));
+    if (face_normal_[t].isZero()) continue;
     order_.push_back(t);
     const std::array<std::uint32_t, 3> corner = {a, b, c};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -160,25 +121,15 @@ void SignedDistance::build() {
   }
 }
 
-std::uint32_t SignedDistance::build_node(std::vector<Vec3>& centers, std::uint32_t begin,
-                                         std::uint32_t end) {
+// A node of the triangles [begin, end) of order_.
+void SignedDistance::build_node(std::vector<Vec3>& centers, std::uint32_t begin,
+                                std::uint32_t end) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back();
   Box3 box;
-  Box3 center_box;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    for (const std::uint32_t v : triangles_[order_[i]]) box.extend(vertices_[v]);
-    center_box.extend(centers[order_[i]]);
-  }
-  nodes_[index].low = box.min();
-  nodes_[index].high = box.max();
-  if (end - begin <= kLeafSize) {
-    nodes_[index].first = begin;
-    nodes_[index].count = end - begin;
-    return index;
-  }
+  for (std::uint32_t i = begin; i < end; ++i) box.extend(centers[order_[i]]);
   Eigen::Index axis = 0;
-  center_box.sizes().maxCoeff(&axis);
+  box.sizes().maxCoeff(&axis);
   const std::uint32_t middle = begin + (end - begin) / 2;
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                    [&](std::uint32_t i, std::uint32_t j) {
@@ -186,9 +137,27 @@ std::uint32_t SignedDistance::build_node(std::vector<Vec3>& centers, std::uint32
                      const double y = centers[j][axis];
                      return x < y || (x == y && i < j);
                    });
-  build_node(centers, begin, middle);
-  nodes_[index].first = build_node(centers, middle, end);
-  return index;
+  // The only triangle of a surface is both children.
+  build_child(centers, begin, std::max(middle, begin + 1), index, 0);
+  build_child(centers, middle, end, index, 1);
+}
+
+void SignedDistance::build_child(std::vector<Vec3>& centers, std::uint32_t begin, std::uint32_t end,
+                                 std::uint32_t node, std::size_t child) {
+  Box3 box;
+  for (std::uint32_t i = begin; i < end; ++i) {
+    for (const std::uint32_t v : triangles_[order_[i]]) box.extend(vertices_[v]);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<Eigen::Index>(axis);
+    const auto c = static_cast<Eigen::Index>(child);
+    nodes_[node].low[axis][c] = box.min()[k];
+    nodes_[node].high[axis][c] = box.max()[k];
+  }
+  const bool is_leaf = end - begin <= kLeafSize;
+  nodes_[node].count[child] = is_leaf ? end - begin : 0;
+  nodes_[node].first[child] = is_leaf ? begin : static_cast<std::uint32_t>(nodes_.size());
+  if (!is_leaf) build_node(centers, begin, end);
 }
 
 Vec3 SignedDistance::pseudonormal(std::uint32_t triangle, int feature) const {
@@ -197,10 +166,7 @@ Vec3 SignedDistance::pseudonormal(std::uint32_t triangle, int feature) const {
   }
   if (feature < 6) {
     const std::uint32_t other = neighbor_[triangle][static_cast<std::size_t>(feature) - 3];
-    if (other != kNoTriangle) {
-      const Vec3 sum = face_normal_[triangle] + face_normal_[other];
-      if (sum.squaredNorm() > 1e-20) return sum.normalized();
-    }
+    if (other != kNoTriangle) return edge_pseudonormal(face_normal_[triangle], face_normal_[other]);
   }
   return face_normal_[triangle];
 }
@@ -224,29 +190,35 @@ ClosestPoint SignedDistance::query(const Vec3& x, double limit, std::uint32_t hi
     consider(hint, vertices_[a], vertices_[b], vertices_[c]);
   }
   struct Entry {
-    std::uint32_t node;
     double squared;
+    std::uint32_t first, count;
+  };
+  // As far as the best itself only a first triangle is wanted.
+  const auto may_hold_nearer = [&](double squared) {
+    return squared < best || (squared == best && feature < 0);
   };
   std::array<Entry, 64> stack;  // the tree is balanced: depth <= 32
   std::size_t size = 0;
-  stack[size++] = {0, squared_distance_to_box(x, nodes_[0].low, nodes_[0].high)};
+  stack[size++] = {0.0, 0, 0};
   while (size > 0) {
     const Entry entry = stack[--size];
-    if (entry.squared > best) continue;
-    const Node& node = nodes_[entry.node];
-    if (node.count > 0) {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        consider(order_[i], corners_[i][0], corners_[i][1], corners_[i][2]);
-      }
-      continue;
+    if (!may_hold_nearer(entry.squared)) continue;
+    for (std::uint32_t i = entry.first; i < entry.first + entry.count; ++i) {
+      consider(order_[i], corners_[i][0], corners_[i][1], corners_[i][2]);
     }
-    const std::uint32_t left = entry.node + 1;
-    const std::uint32_t right = node.first;
-    const double to_left = squared_distance_to_box(x, nodes_[left].low, nodes_[left].high);
-    const double to_right = squared_distance_to_box(x, nodes_[right].low, nodes_[right].high);
-    const bool left_first = to_left <= to_right;
-    stack[size++] = left_first ? Entry{right, to_right} : Entry{left, to_left};
-    stack[size++] = left_first ? Entry{left, to_left} : Entry{right, to_right};
+    if (entry.count > 0) continue;
+    const Node& node = nodes_[entry.first];
+    Eigen::Array2d squared = Eigen::Array2d::Zero();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double at = x[static_cast<Eigen::Index>(axis)];
+      squared += (node.low[axis] - at).max(at - node.high[axis]).max(0.0).square();
+    }
+    const std::size_t near = squared[0] <= squared[1] ? 0 : 1;
+    for (const std::size_t child : {1 - near, near}) {
+      const double to_child = squared[static_cast<Eigen::Index>(child)];
+      if (may_hold_nearer(to_child))
+        stack[size++] = {to_child, node.first[child], node.count[child]};
+    }
   }
   if (feature < 0) return result;
   result.pseudonormal = pseudonormal(result.triangle, feature);
@@ -257,18 +229,6 @@ ClosestPoint SignedDistance::query(const Vec3& x, double limit, std::uint32_t hi
 bool SignedDistance::is_inside(const Vec3& x, const ClosestPoint& nearest) const {
   return inside_ != nullptr ? inside_->winding_number(x) > 0.5
                             : (x - nearest.point).dot(nearest.pseudonormal) < 0.0;
-}
-
-ClosestPoint SignedDistance::query_triangle(const Vec3& x, std::uint32_t triangle) const {
-  const auto [a, b, c] = triangles_[triangle];
-  const TrianglePoint nearest = closest_on_triangle(x, vertices_[a], vertices_[b], vertices_[c]);
-  ClosestPoint result;
-  result.point = nearest.point;
-  result.triangle = triangle;
-  result.pseudonormal = pseudonormal(triangle, nearest.feature);
-  result.distance = (x - nearest.point).norm();
-  if (is_inside(x, result)) result.distance = -result.distance;
-  return result;
 }
 
 }  // namespace gotai::voxel

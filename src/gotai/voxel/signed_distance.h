@@ -40,10 +40,6 @@ class SignedDistance {
   ClosestPoint query(const Vec3& x, double limit = std::numeric_limits<double>::infinity(),
                      std::uint32_t hint = kNoTriangle) const;
 
-  /// The point of one triangle that is nearest to x, with the sign that holds when no other
-  /// triangle is nearer.
-  ClosestPoint query_triangle(const Vec3& x, std::uint32_t triangle) const;
-
   /// Unit outward normal of a triangle; zero for one without area.
   const Vec3& face_normal(std::uint32_t triangle) const { return face_normal_[triangle]; }
   /// The triangle across edge e (from corner e to corner e + 1), or kNoTriangle at a boundary or
@@ -54,23 +50,28 @@ class SignedDistance {
   /// Vertex indices of a triangle after equal positions were merged.
   const geometry::Triangle& corners(std::uint32_t triangle) const { return triangles_[triangle]; }
   const Vec3& vertex(std::uint32_t index) const { return vertices_[index]; }
+  /// Sum of the normals of the faces around a vertex, weighted by their angles.
+  const Vec3& vertex_normal(std::uint32_t index) const { return vertex_normal_[index]; }
   std::size_t triangle_count() const { return triangles_.size(); }
   std::size_t vertex_count() const { return vertices_.size(); }
 
   static constexpr std::uint32_t kNoTriangle = 0xffffffff;
 
  private:
+  // Two children, whose boxes are looked at together.
   struct Node {
-    Vec3 low, high;           // box [m]
-    std::uint32_t first = 0;  // leaf: first of order_; inner: right child (left is the next node)
-    std::uint32_t count = 0;  // leaf: triangles; inner: 0
+    std::array<Eigen::Array2d, 3> low, high;  // x, y, z of the boxes [m]
+    std::array<std::uint32_t, 2> first{};     // leaf: first of order_; inner: node
+    std::array<std::uint32_t, 2> count{};     // leaf: triangles; inner: 0
   };
 
   void merge_vertices(const geometry::Mesh& mesh);
   void find_normals();
   void find_neighbors();
   void build();
-  std::uint32_t build_node(std::vector<Vec3>& centers, std::uint32_t begin, std::uint32_t end);
+  void build_node(std::vector<Vec3>& centers, std::uint32_t begin, std::uint32_t end);
+  void build_child(std::vector<Vec3>& centers, std::uint32_t begin, std::uint32_t end,
+                   std::uint32_t node, std::size_t child);
   Vec3 pseudonormal(std::uint32_t triangle, int feature) const;
   bool is_inside(const Vec3& x, const ClosestPoint& nearest) const;
 

@@ -1,33 +1,44 @@
 #include "gotai/voxel/surface_file.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <span>
 
 namespace gotai::voxel {
 namespace {
 
-template <typename T>
-bool all_finite(const std::vector<T>& rows) {
-  return std::all_of(rows.begin(), rows.end(), [](const T& row) {
-    return std::all_of(row.begin(), row.end(), [](float x) { return std::isfinite(x); });
-  });
+bool all_finite(std::span<const float> values) {
+  return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
 }
 
-bool all_finite(const std::vector<float>& values) {
-  return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
+template <typename T>
+bool all_finite(const std::vector<T>& rows) {
+  return std::all_of(rows.begin(), rows.end(), [](const T& row) { return all_finite(row); });
+}
+
+bool is_finite(const SurfaceTree& tree) {
+  const auto is_finite_packet = [](const auto& p) {
+    return all_finite(p.x) && all_finite(p.y) && all_finite(p.z);
+  };
+  for (const auto& packets : tree.heights) {
+    if (!std::all_of(packets.begin(), packets.end(), is_finite_packet)) return false;
+  }
+  return std::all_of(tree.points.begin(), tree.points.end(), is_finite_packet) &&
+         std::all_of(tree.elements.begin(), tree.elements.end(),
+                     [](const SurfaceElement& e) { return std::isfinite(e.cone_cosine); }) &&
+         std::all_of(tree.edges.begin(), tree.edges.end(),
+                     [](const SampleEdge& e) {
+                       return all_finite(e.direction) && std::isfinite(e.back) &&
+                              std::isfinite(e.forward);
+                     }) &&
+         std::isfinite(tree.area_unit) && all_finite(tree.vertices);
 }
 
 // A search visits packet p of each height below lane p of the next.
 bool has_right_sizes(const SurfaceTree& tree) {
   const std::size_t n = tree.size();
-  if (n == 0 || tree.vector_area.size() != n || tree.cone_cosine.size() != n ||
-      tree.kind.size() != n || tree.edge.size() != n ||
-      tree.edge_reach.size() != tree.edge_direction.size() || tree.first_vertex.size() != n + 1 ||
-      tree.points.size() != (n + kLanes - 1) / kLanes || tree.heights.empty()) {
-    return false;
-  }
-  if (!std::is_sorted(tree.first_vertex.begin(), tree.first_vertex.end()) ||
-      tree.first_vertex.front() != 0 || tree.first_vertex.back() != tree.vertex.size()) {
+  if (n == 0 || tree.points.size() != (n + kLanes - 1) / kLanes || tree.heights.empty()) {
     return false;
   }
   std::size_t children = tree.points.size();
@@ -42,35 +53,31 @@ bool has_right_sizes(const SurfaceTree& tree) {
   return children == 1;
 }
 
-bool is_possible(const SurfaceTree& tree) {
-  const auto edges = static_cast<std::int32_t>(tree.edge_direction.size());
-  for (std::size_t i = 0; i < tree.size(); ++i) {
-    if (tree.kind[i] > SampleKind::corner) return false;
-    const bool is_edge = tree.kind[i] == SampleKind::edge;
-    if (is_edge ? tree.edge[i] < 0 || tree.edge[i] >= edges : tree.edge[i] != -1) return false;
+// Edges belong to as many samples, vertices to samples in their order.
+bool has_right_links(const SurfaceTree& tree, const std::vector<std::uint8_t>& on_edge,
+                     const std::vector<std::uint32_t>& vertex_samples) {
+  if (on_edge.size() != tree.points.size() || vertex_samples.size() != tree.vertices.size()) {
+    return false;
   }
-  const auto finite = [](const auto& p) {
-    return std::all_of(p.x.begin(), p.x.end(), [](float v) { return std::isfinite(v); }) &&
-           std::all_of(p.y.begin(), p.y.end(), [](float v) { return std::isfinite(v); }) &&
-           std::all_of(p.z.begin(), p.z.end(), [](float v) { return std::isfinite(v); });
-  };
-  for (const auto& packets : tree.heights) {
-    if (!std::all_of(packets.begin(), packets.end(), finite)) return false;
-  }
-  return std::all_of(tree.points.begin(), tree.points.end(), finite) && all_finite(tree.normal) &&
-         all_finite(tree.cone_cosine) && all_finite(tree.vector_area) &&
-         all_finite(tree.edge_direction) && all_finite(tree.edge_reach) && all_finite(tree.vertex);
+  const std::size_t beyond = tree.size() % kLanes;
+  if (beyond != 0 && on_edge.back() >> beyond != 0) return false;
+  std::size_t edges = 0;
+  for (const std::uint8_t lanes : on_edge) edges += static_cast<std::size_t>(std::popcount(lanes));
+  return edges == tree.edges.size() &&
+         std::is_sorted(vertex_samples.begin(), vertex_samples.end()) &&
+         (vertex_samples.empty() || vertex_samples.back() < tree.size());
 }
 
 bool is_possible(const DistanceField& field) {
   constexpr std::int32_t kMostBricks = (1 << kMaxSurfaceLevel) / kBrickCells + 2;
-  if (field.bricks < 1 || field.bricks > kMostBricks || field.values.size() % kBrickStride != 0) {
+  if (field.bricks < 1 || field.bricks > kMostBricks || field.values.empty() ||
+      field.values.size() % kBrickBytes != 0) {
     return false;
   }
   const auto n = static_cast<std::size_t>(field.bricks);
   const auto m = static_cast<std::size_t>(field.coarse_nodes());
   if (field.brick.size() != n * n * n || field.coarse.size() != m * m * m + 1) return false;
-  const auto stored = static_cast<std::int32_t>(field.values.size() / kBrickStride);
+  const auto stored = static_cast<std::int32_t>(field.values.size() / kBrickBytes);
   if (!std::all_of(field.brick.begin(), field.brick.end(),
                    [&](std::int32_t b) { return b >= kNoBrickInside && b < stored; })) {
     return false;
@@ -86,15 +93,18 @@ void encode_tree(ByteWriter& out, const SurfaceTree& tree) {
   out.array(tree.points);
   out.value(static_cast<std::uint32_t>(tree.heights.size()));
   for (const auto& packets : tree.heights) out.array(packets);
-  out.array(tree.normal);
-  out.array(tree.cone_cosine);
-  out.array(tree.vector_area);
-  out.array(tree.kind);
-  out.array(tree.edge_direction);
-  out.array(tree.edge_reach);
-  out.array(tree.edge);
-  out.array(tree.vertex);
-  out.array(tree.first_vertex);
+  out.array(tree.elements);
+  out.value(tree.area_unit);
+  std::vector<std::uint8_t> on_edge;
+  for (std::size_t p = 0; p < tree.points.size(); ++p) on_edge.push_back(tree.links[p].on_edge);
+  out.array(on_edge);
+  out.array(tree.edges);
+  out.array(tree.vertices);
+  std::vector<std::uint32_t> vertex_samples;
+  for (std::uint32_t i = 0; i < tree.size(); ++i) {
+    vertex_samples.insert(vertex_samples.end(), tree.vertices_of(i).size(), i);
+  }
+  out.array(vertex_samples);
 }
 
 SurfaceTree decode_tree(ByteReader& in) {
@@ -103,16 +113,17 @@ SurfaceTree decode_tree(ByteReader& in) {
   const auto heights = in.value<std::uint32_t>();
   if (heights > 16) in.fail("is damaged: the sample tree is too high");
   for (std::uint32_t h = 0; h < heights; ++h) tree.heights.push_back(in.array<SpherePacket>());
-  tree.normal = in.array<std::array<float, 3>>();
-  tree.cone_cosine = in.array<float>();
-  tree.vector_area = in.array<std::array<float, 3>>();
-  tree.kind = in.array<SampleKind>();
-  tree.edge_direction = in.array<std::array<float, 3>>();
-  tree.edge_reach = in.array<std::array<float, 2>>();
-  tree.edge = in.array<std::int32_t>();
-  tree.vertex = in.array<std::array<float, 3>>();
-  tree.first_vertex = in.array<std::uint32_t>();
-  if (!has_right_sizes(tree) || !is_possible(tree)) in.fail("is damaged: impossible sample tree");
+  tree.elements = in.array<SurfaceElement>();
+  tree.area_unit = in.value<float>();
+  const auto on_edge = in.array<std::uint8_t>();
+  tree.edges = in.array<SampleEdge>();
+  tree.vertices = in.array<std::array<float, 3>>();
+  const auto vertex_samples = in.array<std::uint32_t>();
+  if (!has_right_sizes(tree) || !has_right_links(tree, on_edge, vertex_samples) ||
+      !is_finite(tree)) {
+    in.fail("is damaged: impossible sample tree");
+  }
+  link_packets(tree, on_edge, vertex_samples);
   return tree;
 }
 
@@ -135,7 +146,7 @@ DistanceField decode_field(ByteReader& in) {
   }
   field.bricks = in.value<std::int32_t>();
   field.brick = in.array<std::int32_t>();
-  field.values = in.array<std::int16_t>();
+  field.values = in.array<std::uint8_t>();
   field.coarse = in.array<std::int16_t>();
   if (!is_possible(field)) in.fail("is damaged: impossible distance field");
   return field;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "gotai/core/random.h"
+#include "gotai/voxel/sample_grid.h"
 
 namespace gotai::voxel {
 namespace {
@@ -15,7 +16,6 @@ constexpr double kMildAngle = 0.09;       // convex edges above it attract sampl
 constexpr double kFaceRadius = 0.90;      // of the spacing, between face samples
 constexpr double kEdgeRadius = 0.7;       // of the spacing, between samples of sharp edges
 constexpr double kCornerRadius = 0.3;     // of the spacing, between sharp corners
-constexpr double kEdgeSpacing = 1.2;      // of the spacing, between samples of an edge, at most
 constexpr double kAloneLength = 0.75;     // of the spacing, of edges between corners
 constexpr double kStraight = 0.999;       // cosine: edges that go on in one line
 constexpr double kSameSide = 0.5;         // cosine: normals of one side of a thin part
@@ -29,57 +29,11 @@ struct DensePoint {
   double area;
 };
 
-// Buckets of samples by cell, for neighbour searches within one cell edge.
-class SampleGrid {
- public:
-  SampleGrid(double cell, std::size_t expected) : inverse_cell_(1.0 / cell) {
-    std::size_t size = 1024;
-    while (size < 2 * expected) size *= 2;
-    head_.assign(size, kNone);
-  }
-
-  void insert(const Vec3& x, std::uint32_t index) {
-    const std::size_t slot = hash(cell(x));
-    if (next_.size() <= index) next_.resize(index + 1, kNone);
-    next_[index] = head_[slot];
-    head_[slot] = index;
-  }
-
-  // Visits samples of the 27 cells around x (and others whose hash collides; some twice).
-  template <typename Visit>
-  void visit(const Vec3& x, const Visit& visit) const {
-    const std::array<std::int64_t, 3> c = cell(x);
-    for (std::int64_t dz = -1; dz <= 1; ++dz) {
-      for (std::int64_t dy = -1; dy <= 1; ++dy) {
-        for (std::int64_t dx = -1; dx <= 1; ++dx) {
-          for (std::uint32_t i = head_[hash({c[0] + dx, c[1] + dy, c[2] + dz})]; i != kNone;
-               i = next_[i]) {
-            visit(i);
-          }
-        }
-      }
-    }
-  }
-
- private:
-  static constexpr std::uint32_t kNone = 0xffffffff;
-
-  std::array<std::int64_t, 3> cell(const Vec3& x) const {
-    return {static_cast<std::int64_t>(std::floor(x.x() * inverse_cell_)),
-            static_cast<std::int64_t>(std::floor(x.y() * inverse_cell_)),
-            static_cast<std::int64_t>(std::floor(x.z() * inverse_cell_))};
-  }
-  std::size_t hash(const std::array<std::int64_t, 3>& c) const {
-    const std::uint64_t h = static_cast<std::uint64_t>(c[0]) * 0x9E3779B97F4A7C15ULL ^
-                            static_cast<std::uint64_t>(c[1]) * 0xC2B2AE3D27D4EB4FULL ^
-                            static_cast<std::uint64_t>(c[2]) * 0x165667B19E3779F9ULL;
-    return static_cast<std::size_t>(h ^ (h >> 29)) & (head_.size() - 1);
-  }
-
-  double inverse_cell_;
-  std::vector<std::uint32_t> head_;
-  std::vector<std::uint32_t> next_;
-};
+Box3 box_of(const SignedDistance& surface) {
+  Box3 box;
+  for (std::uint32_t v = 0; v < surface.vertex_count(); ++v) box.extend(surface.vertex(v));
+  return box;
+}
 
 // Signed angle between the normals across an edge: > 0 where the surface is convex [rad].
 double dihedral(const SignedDistance& surface, std::uint32_t triangle, int edge) {
@@ -106,7 +60,7 @@ struct VertexFan {
 class Sampler {
  public:
   Sampler(const SignedDistance& surface, double spacing)
-      : surface_(surface), spacing_(spacing), grid_(spacing, 4096) {}
+      : surface_(surface), spacing_(spacing), box_(box_of(surface)), grid_(box_, spacing) {}
 
   std::vector<SurfaceSample> run() {
     collect_fans();
@@ -179,17 +133,23 @@ class Sampler {
     return s;
   }
 
-  // Adds a sample unless one that can stand for it is nearer than the radius.
-  bool add(const SurfaceSample& s, double radius) {
-    bool free = true;
-    grid_.visit(s.position, [&](std::uint32_t i) {
-      free = free && !((samples_[i].position - s.position).squaredNorm() < radius * radius &&
-                       samples_[i].normal.dot(s.normal) > kSameSide);
+  // Is no sample of this side nearer than the radius?
+  bool is_free(const Vec3& x, const Vec3& normal, double radius) const {
+    constexpr double kTaken = -1.0;  // nothing else needs to be looked at
+    double reach = radius * radius;
+    grid_.visit(x, reach, [&](const GridSample& s) {
+      const bool takes =
+          (s.position - x).squaredNorm() < radius * radius && s.normal.dot(normal) > kSameSide;
+      return reach = takes ? kTaken : reach;
     });
-    if (!free) return false;
-    grid_.insert(s.position, static_cast<std::uint32_t>(samples_.size()));
+    return reach != kTaken;
+  }
+
+  // Adds a sample unless one that can stand for it is nearer than the radius.
+  void add(const SurfaceSample& s, double radius) {
+    if (!is_free(s.position, s.normal, radius)) return;
+    grid_.insert({s.position, s.normal, kSameSide, static_cast<std::uint32_t>(samples_.size())});
     samples_.push_back(s);
-    return true;
   }
 
   void place_corners() {
@@ -306,33 +266,48 @@ class Sampler {
     for (std::size_t i = order.size(); i > 1; --i) {
       std::swap(order[i - 1], order[random.next_u32() % i]);
     }
-    for (const std::uint32_t i : order) {
+    // In this order nothing is where the memory expects it.
+    constexpr std::size_t kAhead = 8;
+    for (std::size_t at = 0; at < order.size(); ++at) {
+      __builtin_prefetch(&dense_[order[std::min(at + 2 * kAhead, order.size() - 1)]]);
+      grid_.prefetch(dense_[order[std::min(at + kAhead, order.size() - 1)]].position);
+      const std::uint32_t i = order[at];
+      const double radius = kFaceRadius * spacing_;
+      if (!is_free(dense_[i].position, dense_[i].normal, radius)) continue;
       SurfaceSample s;
       s.position = dense_[i].position;
       s.normal = dense_[i].normal;
-      add(s, kFaceRadius * spacing_);
+      add(s, radius);
     }
   }
 
   SampleGrid grid_of_samples() const {
-    SampleGrid grid(spacing_, samples_.size());
-    for (std::uint32_t i = 0; i < samples_.size(); ++i) grid.insert(samples_[i].position, i);
+    std::vector<GridSample> all;
+    all.reserve(samples_.size());
+    for (std::uint32_t i = 0; i < samples_.size(); ++i) all.push_back(grid_sample(i));
+    SampleGrid grid(box_, spacing_);
+    grid.insert_all(std::move(all));
     return grid;
+  }
+
+  GridSample grid_sample(std::uint32_t i) const {
+    const SurfaceSample& s = samples_[i];
+    return {s.position, s.normal, std::min(kSameSide, s.cone_cosine - 1e-9), i};
   }
 
   // The nearest sample, of the side that faces along the normal if there is one.
   std::uint32_t nearest_sample(const SampleGrid& grid, const Vec3& x, const Vec3& normal) const {
+    const double other_side = 1e3 * spacing_ * spacing_;
     std::uint32_t nearest = 0;
     double best = std::numeric_limits<double>::infinity();
-    grid.visit(x, [&](std::uint32_t i) {
-      const SurfaceSample& s = samples_[i];
-      const bool same_side = s.normal.dot(normal) > std::min(kSameSide, s.cone_cosine - 1e-9);
-      const double squared =
-          (s.position - x).squaredNorm() + (same_side ? 0.0 : 1e3 * spacing_ * spacing_);
-      if (squared < best || (squared == best && i < nearest)) {
+    grid.visit(x, best, [&](const GridSample& s) {
+      const bool is_same_side = s.normal.dot(normal) > s.same_side;
+      const double squared = (s.position - x).squaredNorm() + (is_same_side ? 0.0 : other_side);
+      if (squared < best || (squared == best && s.index < nearest)) {
         best = squared;
-        nearest = i;
+        nearest = s.index;
       }
+      return best;
     });
     return nearest;
   }
@@ -402,6 +377,7 @@ class Sampler {
 
   const SignedDistance& surface_;
   double spacing_;
+  Box3 box_;
   std::vector<VertexFan> fans_;
   std::vector<SurfaceSample> samples_;
   SampleGrid grid_;

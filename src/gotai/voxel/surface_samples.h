@@ -38,6 +38,9 @@ struct SurfaceSample {
 /// Convex edges whose faces' normals differ by more than this are sharp [rad].
 inline constexpr double kSharpAngle = 0.3;  // 17 degrees
 
+/// Samples of a sharp edge are no farther apart than this many spacings.
+inline constexpr double kEdgeSpacing = 1.2;
+
 /// Samples a closed surface with about one point per spacing^2. Every point of the surface has a
 /// sample of compatible normal within about one spacing, so both sides of a thin plate are kept.
 /// The same mesh and spacing give the same samples, in the same order, on every platform.

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <span>
 
+#include "gotai/core/bytes_of.h"
 #include "gotai/voxel/run_order.h"
 #include "gotai/voxel/surface_model.h"
 
@@ -96,15 +98,85 @@ std::vector<std::uint32_t> order_in_runs(const std::vector<Vec3>& points) {
 }
 
 std::size_t SurfaceTree::bytes() const {
-  std::size_t total = points.size() * sizeof(PointPacket);
-  for (const auto& packets : heights) total += packets.size() * sizeof(SpherePacket);
-  total += normal.size() * sizeof(normal[0]) + cone_cosine.size() * sizeof(float) +
-           vector_area.size() * sizeof(vector_area[0]) + kind.size() +
-           edge.size() * sizeof(edge[0]) + edge_direction.size() * sizeof(edge_direction[0]) +
-           edge_reach.size() * sizeof(edge_reach[0]) + vertex.size() * sizeof(vertex[0]) +
-           first_vertex.size() * sizeof(first_vertex[0]);
-  return total;
+  return bytes_of(points) + bytes_of(heights) + bytes_of(elements) + bytes_of(edges) +
+         bytes_of(vertices) + bytes_of(vertex_lane) + bytes_of(links);
 }
+
+std::span<const std::array<float, 3>> SurfaceTree::vertices_of(std::uint32_t sample) const {
+  if (!has_vertices(sample)) return {};
+  const std::uint32_t packet = sample / kLanes;
+  const auto begin = vertex_lane.begin() + links[packet].first_vertex;
+  const auto end = vertex_lane.begin() + links[packet + 1].first_vertex;
+  const auto [first, last] =
+      std::equal_range(begin, end, static_cast<std::uint8_t>(sample % kLanes));
+  return std::span(vertices).subspan(static_cast<std::size_t>(first - vertex_lane.begin()),
+                                     static_cast<std::size_t>(last - first));
+}
+
+void link_packets(SurfaceTree& tree, const std::vector<std::uint8_t>& on_edge,
+                  const std::vector<std::uint32_t>& vertex_samples) {
+  tree.links.assign(on_edge.size() + 1, {});
+  for (std::size_t p = 0; p < on_edge.size(); ++p) {
+    tree.links[p].on_edge = on_edge[p];
+    tree.links[p + 1].first_edge =
+        tree.links[p].first_edge + static_cast<std::uint32_t>(std::popcount(on_edge[p]));
+  }
+  tree.vertex_lane.reserve(vertex_samples.size());
+  for (const std::uint32_t sample : vertex_samples) {
+    const std::uint32_t lane = sample % kLanes;
+    tree.vertex_lane.push_back(static_cast<std::uint8_t>(lane));
+    PacketLinks& packet = tree.links[sample / kLanes];
+    packet.has_vertices = static_cast<std::uint8_t>(packet.has_vertices | 1U << lane);
+    tree.links[sample / kLanes + 1].first_vertex =
+        static_cast<std::uint32_t>(tree.vertex_lane.size());
+  }
+  for (std::size_t p = 1; p < tree.links.size(); ++p) {
+    tree.links[p].first_vertex =
+        std::max(tree.links[p].first_vertex, tree.links[p - 1].first_vertex);
+  }
+}
+
+namespace {
+
+std::array<std::int16_t, 3> to_units(const Vec3& v, double unit) {
+  const auto round = [unit](double x) { return static_cast<std::int16_t>(std::lround(x / unit)); };
+  return {round(v.x()), round(v.y()), round(v.z())};
+}
+
+// What samples are besides points.
+void append_elements(const std::vector<SurfaceSample>& samples,
+                     const std::vector<std::uint32_t>& order, const Vec3& center,
+                     SurfaceTree& tree) {
+  double largest = 0.0;
+  for (const SurfaceSample& s : samples) {
+    largest = std::max(largest, s.vector_area.cwiseAbs().maxCoeff());
+  }
+  // Rounded up, so that the largest fits; a surface may cancel in every sample.
+  tree.area_unit = largest > 0.0 ? static_cast<float>(largest / 32766.0) : 1.0F;
+  std::vector<std::uint8_t> on_edge(tree.points.size());
+  std::vector<std::uint32_t> vertex_samples;
+  tree.elements.reserve(samples.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const SurfaceSample& s = samples[order[i]];
+    tree.elements.push_back({to_units(s.normal, static_cast<double>(kNormalUnit)),
+                             to_units(s.vector_area, static_cast<double>(tree.area_unit)),
+                             static_cast<float>(s.cone_cosine)});
+    if (s.kind == SampleKind::edge) {
+      on_edge[i / kLanes] = static_cast<std::uint8_t>(on_edge[i / kLanes] | 1U << i % kLanes);
+      tree.edges.push_back({to_floats(s.edge_direction), static_cast<float>(s.reach_back),
+                            static_cast<float>(s.reach_forward)});
+    }
+    for (const Vec3& x : s.vertices) {
+      tree.vertices.push_back(to_floats(x - center));
+      vertex_samples.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  tree.edges.shrink_to_fit();
+  tree.vertices.shrink_to_fit();
+  link_packets(tree, on_edge, vertex_samples);
+}
+
+}  // namespace
 
 SurfaceTree make_surface_tree(const std::vector<SurfaceSample>& samples, const Vec3& center) {
   std::vector<Vec3> positions;
@@ -124,23 +196,7 @@ SurfaceTree make_surface_tree(const std::vector<SurfaceSample>& samples, const V
     tree.points[i / kLanes].z[i % kLanes] = x[2];
     if (i < samples.size()) points[i] = Vec3(x[0], x[1], x[2]);
   }
-  for (const std::uint32_t i : order) {
-    const SurfaceSample& s = samples[i];
-    tree.normal.push_back(to_floats(s.normal));
-    tree.cone_cosine.push_back(static_cast<float>(s.cone_cosine));
-    tree.vector_area.push_back(to_floats(s.vector_area));
-    tree.kind.push_back(s.kind);
-    tree.edge.push_back(-1);
-    if (s.kind == SampleKind::edge) {
-      tree.edge.back() = static_cast<std::int32_t>(tree.edge_direction.size());
-      tree.edge_direction.push_back(to_floats(s.edge_direction));
-      tree.edge_reach.push_back(
-          {static_cast<float>(s.reach_back), static_cast<float>(s.reach_forward)});
-    }
-    tree.first_vertex.push_back(static_cast<std::uint32_t>(tree.vertex.size()));
-    for (const Vec3& x : s.vertices) tree.vertex.push_back(to_floats(x - center));
-  }
-  tree.first_vertex.push_back(static_cast<std::uint32_t>(tree.vertex.size()));
+  append_elements(samples, order, center, tree);
   std::size_t run = kLanes;
   do {
     tree.heights.push_back(bound_runs(points, run));
