@@ -1,8 +1,11 @@
 // The nearest triangle, found eight at a time, against the search in double precision.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <vector>
 
 #include "gotai/collision/exact_surface.h"
@@ -63,6 +66,25 @@ TEST_P(Exact, NearestTriangleIsTheSameOnEveryKernel) {
       const std::array<float, 3> p = {x.x(), x.y(), x.z()};
       ASSERT_EQ(nearest_triangle(exact.tree, p, limit, Kernel::portable),
                 nearest_triangle(exact.tree, p, limit, kernel));
+    }
+  }
+}
+
+TEST_P(Exact, OfEquallyNearTrianglesTheFirstIsFoundWhateverTheLimit) {
+  const voxel::Shape shape = make();
+  const ExactSurface exact(shape);
+  Random random(33);
+  for (int k = 0; k < 2000; ++k) {
+    // Over a vertex all triangles around it are equally far.
+    const auto i = static_cast<std::size_t>(k) % shape.mesh.triangles.size();
+    const Vec3 x = shape.mesh.vertices[shape.mesh.triangles[i][0]] +
+                   random.uniform(0.0, 0.02) * random.unit_vector();
+    const Eigen::Vector3f f = (x - exact.tree.center).cast<float>();
+    const std::array<float, 3> p = {f.x(), f.y(), f.z()};
+    const std::uint32_t near = nearest_triangle(exact.tree, p, 0.03F);
+    ASSERT_LT(near, shape.mesh.triangles.size());
+    for (const float limit : {0.3F, 3.0F, 1e30F, std::numeric_limits<float>::infinity()}) {
+      ASSERT_EQ(nearest_triangle(exact.tree, p, limit), near) << limit;
     }
   }
 }

@@ -3,6 +3,8 @@
 /// are, and their distances to the true surface.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -19,12 +21,21 @@
 
 namespace gotai::collision {
 
+/// Candidates that are measured to triangles, and the mesh's vertices around their samples.
+struct RefinementScratch {
+  std::vector<std::uint32_t> candidates;       ///< which, of one body's samples
+  std::vector<std::array<float, 3>> vertices;  ///< of all of them, in their order [m], frame S
+  std::vector<std::size_t> vertices_end;       ///< by candidate
+  std::vector<FieldAtPoint> values;            ///< of the other body's field at the vertices
+};
+
 /// Storage of the search for one pair after another.
 struct SurfaceScratch {
   SurfaceSearch search;
   CandidateScratch lanes;
   std::vector<ContactCandidate> candidates;
   Reduction reduction;
+  RefinementScratch refinement;
   double reduction_error = 0.0;  ///< largest Reduction::error so far
 };
 
@@ -65,13 +76,13 @@ class FieldContacts {
   /// By how much Q's field may overestimate distances near edges [m].
   double rounding() const { return kEdgeRounding * static_cast<double>(field_.field.cell); }
 
-  /// Replaces gap and normal by those of Q's triangles. A sample of a face first gives way to the
-  /// deepest of the mesh's vertices around it. A sample of an edge slides to where its edge is
-  /// nearest, if that is between it and its neighbours: with flat faces on both sides of the
-  /// nearest point, where the two lines of the distance along the edge cross. The normal remains
-  /// the field's where the nearest point is on an edge: there the field's is a mean that does not
-  /// jump.
-  void refine(const ExactSurface& exact, ContactCandidate& c) const;
+  /// Replaces gaps and normals of scratch.refinement.candidates by those of Q's triangles. A sample
+  /// of a face first gives way to the deepest of the mesh's vertices around it. A sample of an edge
+  /// slides to where its edge is nearest, if that is between it and its neighbours: with flat faces
+  /// on both sides of the nearest point, where the two lines of the distance along the edge cross.
+  /// The normal remains the field's where the nearest point is on an edge: there the field's is a
+  /// mean that does not jump.
+  void refine(const ExactSurface& exact, SurfaceScratch& scratch) const;
 
   /// Replaces the gap by the distance to Q's triangles, for contacts that push in a step: of the
   /// sample itself or, where its edge passes over an edge of Q, of where the edges cross, with
@@ -92,7 +103,8 @@ class FieldContacts {
   float beside_crossings(const FieldReach& reach, const PairMotion& motion) const;
   void append_hits(const FieldReach& reach, const PairMotion& motion,
                    SurfaceScratch& scratch) const;
-  FieldPoint deepest_vertex(std::uint32_t sample, double gap) const;
+  void look_up_vertices(SurfaceScratch& scratch) const;
+  void refine_from(const FieldPoint& own, const ExactSurface& exact, ContactCandidate& c) const;
   bool rises_at(const Vec3& x_P, const Vec3& along_P) const;
   void refine_crossing(const ExactSurface& exact, const Vec3& own_Q, ContactCandidate& c) const;
   void put_at(const Vec3& x_P, ContactCandidate& c) const;

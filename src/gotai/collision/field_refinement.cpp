@@ -29,12 +29,50 @@ struct FieldContacts::Slid {
   Vec3 face_Q = Vec3::Zero();  // outward normal where the nearest point is inside a face, else 0
 };
 
-void FieldContacts::refine(const ExactSurface& exact, ContactCandidate& c) const {
-  const auto sample = static_cast<std::uint32_t>(c.feature);
-  const FieldPoint own = deepest_vertex(sample, c.gap);
+void FieldContacts::refine(const ExactSurface& exact, SurfaceScratch& scratch) const {
+  look_up_vertices(scratch);
+  const RefinementScratch& refinement = scratch.refinement;
+  std::size_t vertex = 0;
+  for (std::size_t i = 0; i < refinement.candidates.size(); ++i) {
+    ContactCandidate& c = scratch.candidates[refinement.candidates[i]];
+    FieldPoint deepest{sample_point(samples_, static_cast<std::uint32_t>(c.feature)), c.gap};
+    for (; vertex < refinement.vertices_end[i]; ++vertex) {
+      const auto distance = static_cast<double>(refinement.values[vertex].distance);
+      if (distance < deepest.distance) {
+        deepest = {samples_.center + to_double(refinement.vertices[vertex]), distance};
+      }
+    }
+    refine_from(deepest, exact, c);
+  }
+}
+
+// The vertices around all these samples in Q's field, in one go.
+void FieldContacts::look_up_vertices(SurfaceScratch& scratch) const {
+  RefinementScratch& refinement = scratch.refinement;
+  refinement.vertices.clear();
+  refinement.vertices_end.clear();
+  auto margin = -std::numeric_limits<float>::infinity();
+  for (const std::uint32_t k : refinement.candidates) {
+    const ContactCandidate& c = scratch.candidates[k];
+    for (const std::array<float, 3>& x :
+         samples_.tree.vertices_of(static_cast<std::uint32_t>(c.feature))) {
+      refinement.vertices.push_back(x);
+    }
+    refinement.vertices_end.push_back(refinement.vertices.size());
+    margin = std::max(margin, static_cast<float>(c.gap));
+  }
+  if (refinement.vertices.empty()) return;
+  if (refinement.values.size() < refinement.vertices.size()) {
+    refinement.values.resize(refinement.vertices.size());
+  }
+  look_up_field(field_.field, pose_, margin, refinement.vertices, refinement.values);
+}
+
+void FieldContacts::refine_from(const FieldPoint& own, const ExactSurface& exact,
+                                ContactCandidate& c) const {
   const double error = kFieldError * field_.field.cell;
   const double limit = std::abs(own.distance) + error;
-  const voxel::SampleEdge* edge = samples_.tree.edge_of(sample);
+  const voxel::SampleEdge* edge = samples_.tree.edge_of(static_cast<std::uint32_t>(c.feature));
   const Vec3 edge_P = edge == nullptr ? Vec3(Vec3::Zero()) : to_double(edge->direction);
   Slid best = slide(exact, own.x_P, edge_P, 0.0, limit, own.distance);
   if (edge != nullptr && std::isfinite(best.distance)) {
@@ -128,25 +166,6 @@ void FieldContacts::refine_crossing(const ExactSurface& exact, const Vec3& own_Q
 // The contact's point on body a, for a point of P.
 void FieldContacts::put_at(const Vec3& x_P, ContactCandidate& c) const {
   c.point_A = samples_of_b_ ? Vec3(X_QP_ * x_P - p_MA_ + c.gap * c.normal_A) : Vec3(x_P - p_MA_);
-}
-
-// A sample or, if deeper, one of the vertices that it stands for.
-FieldContacts::FieldPoint FieldContacts::deepest_vertex(std::uint32_t sample, double gap) const {
-  FieldPoint deepest{sample_point(samples_, sample), gap};
-  const std::span<const std::array<float, 3>> vertices = samples_.tree.vertices_of(sample);
-  std::array<FieldAtPoint, voxel::kLanes> values;
-  for (std::size_t begin = 0; begin < vertices.size(); begin += voxel::kLanes) {
-    const std::size_t count = std::min<std::size_t>(voxel::kLanes, vertices.size() - begin);
-    look_up_field(field_.field, pose_, static_cast<float>(gap), vertices.subspan(begin, count),
-                  std::span(values));
-    for (std::size_t i = 0; i < count; ++i) {
-      const double distance = static_cast<double>(values[i].distance);
-      if (distance < deepest.distance) {
-        deepest = {samples_.center + to_double(vertices[begin + i]), distance};
-      }
-    }
-  }
-  return deepest;
 }
 
 FieldContacts::Slid FieldContacts::slide(const ExactSurface& exact, const Vec3& own_P,

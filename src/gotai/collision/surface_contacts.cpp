@@ -57,18 +57,24 @@ void refine_kept(const BothWays& ways, const ExactSurface* exact_a, const ExactS
   for (const std::uint32_t k : scratch.reduction.kept) {
     deepest = std::min(deepest, scratch.candidates[k].gap);
   }
-  for (const std::uint32_t k : scratch.reduction.kept) {
-    ContactCandidate& c = scratch.candidates[k];
-    const bool is_of_b = (c.feature >> 32U) != 0;
-    const FieldContacts& field = is_of_b ? ways.of_b : ways.of_a;
-    const double rounding = in_step && c.near_edge ? field.rounding() : 0.0;
-    if (c.gap > std::max(deepest, 0.0) + reach + rounding) continue;
-    const ExactSurface* surface = is_of_b ? exact_a : exact_b;
+  std::vector<std::uint32_t>& refined = scratch.refinement.candidates;
+  for (const bool of_b : {false, true}) {
+    const FieldContacts& field = of_b ? ways.of_b : ways.of_a;
+    const ExactSurface* surface = of_b ? exact_a : exact_b;
     if (surface == nullptr) continue;
+    refined.clear();
+    for (const std::uint32_t k : scratch.reduction.kept) {
+      const ContactCandidate& c = scratch.candidates[k];
+      const double rounding = in_step && c.near_edge ? field.rounding() : 0.0;
+      if (((c.feature >> 32U) != 0) == of_b && (in_step || c.near_edge) &&
+          c.gap <= std::max(deepest, 0.0) + reach + rounding) {
+        refined.push_back(k);
+      }
+    }
     if (in_step) {
-      field.refine_in_step(*surface, c);
-    } else if (c.near_edge) {
-      field.refine(*surface, c);
+      for (const std::uint32_t k : refined) field.refine_in_step(*surface, scratch.candidates[k]);
+    } else {
+      field.refine(*surface, scratch);
     }
   }
 }
