@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "gotai/collision/field_contacts.h"
@@ -26,7 +27,7 @@ struct FieldContacts::Slid {
   double distance = std::numeric_limits<double>::infinity();
   double slope = 0.0;          // of the distance along the edge
   Vec3 up_Q = Vec3::Zero();    // unit, away from the nearest point, or out of the body
-  Vec3 face_Q = Vec3::Zero();  // outward normal where the nearest point is inside a face, else 0
+  std::uint32_t triangle = 0;  // the nearest of Q
 };
 
 void FieldContacts::refine(const ExactSurface& exact, SurfaceScratch& scratch) const {
@@ -98,8 +99,10 @@ void FieldContacts::refine_from(const FieldPoint& own, const ExactSurface& exact
     return;
   }
   c.gap = best.distance;
-  if (!best.face_Q.isZero()) {
-    c.normal_A = samples_of_b_ ? Vec3(-best.face_Q) : Vec3(R_QP_.transpose() * best.face_Q);
+  const Vec3 face_Q = exact.surface.face_normal(best.triangle);
+  const bool is_above_face = best.up_Q.dot(face_Q) > 1.0 - 1e-6;
+  if (is_above_face) {
+    c.normal_A = samples_of_b_ ? Vec3(-face_Q) : Vec3(R_QP_.transpose() * face_Q);
   }
   put_at(own.x_P + best.along * edge_P, c);
 }
@@ -175,15 +178,12 @@ FieldContacts::Slid FieldContacts::slide(const ExactSurface& exact, const Vec3& 
   const double likely = std::abs(expected) + kLikelyError * field_.field.cell;
   const voxel::ClosestPoint nearest = exact.nearest(x_Q, limit, likely);
   if (!std::isfinite(nearest.distance)) return {};
-  const Vec3 away = x_Q - nearest.point;
-  const double length = away.norm();
-  const Vec3 up = length > 1e-9 * limit
-                      ? Vec3(away * (std::copysign(1.0, nearest.distance) / length))
-                      : nearest.pseudonormal;
-  const Vec3 face = exact.surface.face_normal(nearest.triangle);
-  const bool is_above_face = up.dot(face) > 1.0 - 1e-6;
-  return {along, nearest.distance, up.dot(R_QP_ * edge_P), up,
-          is_above_face ? face : Vec3(Vec3::Zero())};
+  const double length = std::abs(nearest.distance);
+  const Vec3 up =
+      length > 1e-9 * limit
+          ? Vec3((x_Q - nearest.point) * (std::copysign(1.0, nearest.distance) / length))
+          : nearest.pseudonormal;
+  return {along, nearest.distance, up.dot(R_QP_ * edge_P), up, nearest.triangle};
 }
 
 }  // namespace gotai::collision

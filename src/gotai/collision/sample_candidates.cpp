@@ -88,16 +88,15 @@ void append_lanes(const NearSurface& near, std::span<const SurfaceHit> hits,
   for (; mask != 0U; mask &= mask - 1U) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(mask));
     const std::uint32_t s = hits[lane].sample;
-    ContactCandidate& c = out.emplace_back();
-    c.point_A = lane_of(from.point, lane);
-    c.normal_A = lane_of(from.normal, lane);
-    c.gap = static_cast<double>(from.gap[lane]);
-    c.area = static_cast<double>(from.area[lane]);
-    c.share_A = c.point_A;
-    c.feature = surface_feature(near.samples_of_b ? 1 : 0, s);
-    c.crosses = (from.crosses >> lane & 1U) != 0U;
-    c.near_edge =
-        (from.rough >> lane & 1U) != 0U || tree.edge_of(s) != nullptr || tree.has_vertices(s);
+    out.push_back({.point_A = lane_of(from.point, lane),
+                   .normal_A = lane_of(from.normal, lane),
+                   .gap = static_cast<double>(from.gap[lane]),
+                   .area = static_cast<double>(from.area[lane]),
+                   .share_A = lane_of(from.point, lane),
+                   .feature = surface_feature(near.samples_of_b ? 1 : 0, s),
+                   .crosses = (from.crosses >> lane & 1U) != 0U,
+                   .near_edge = (from.rough >> lane & 1U) != 0U || tree.edge_of(s) != nullptr ||
+                                tree.has_vertices(s)});
   }
 }
 
